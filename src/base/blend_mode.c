@@ -57,7 +57,7 @@ static double saturation(const double c[3])
     return MAX(c[0], MAX(c[1], c[2])) - MIN(c[0], MIN(c[1], c[2]));
 }
 
-/* Sets the luminosity; channels beyond 0..1 are pulled towards the grey of it. */
+/* Sets the luminosity; channels beyond 0..1 are pulled towards the grey of that luminosity. */
 static void set_luminosity(double c[3], double l)
 {
     const double shift = l - luminosity(c);

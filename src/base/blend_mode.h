@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/** How a colour is blended with the backdrop. */
+/** The mode by which a colour is blended with the backdrop. */
 typedef enum FlBlendMode {
     FL_BLEND_MODE_OVER, // "normal"
     FL_BLEND_MODE_MULTIPLY,

@@ -1,10 +1,10 @@
-/* Where there is anything in a plane that is mostly bare, as rectangles to loop over. */
+/* The painted areas of a mostly empty plane, as rectangles to loop over. */
 #ifndef FLUIDY_BASE_BLOCKS_H
 #define FLUIDY_BASE_BLOCKS_H
 
 #include "base/rect.h"
 
-#define FL_BLOCK_ROWS 16 // at most; as wide as what is there
+#define FL_BLOCK_ROWS 16 // the most rows of a block; its width is that of the painted area
 
 /** Rectangles that do not overlap, from the top down; x and y are even. */
 typedef struct FlBlocks {

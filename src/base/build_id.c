@@ -10,7 +10,7 @@
 #include <elf.h>
 #include <link.h>
 
-/* Whether the object that is loaded there has the function below. */
+/* Returns: true if the loaded object contains fl_build_id(). */
 static bool is_ours(const struct dl_phdr_info *info)
 {
     const uintptr_t here = (uintptr_t)fl_build_id;
@@ -45,7 +45,7 @@ static int look_at(struct dl_phdr_info *info, size_t size, void *text)
         return 0;
     for (int k = 0; k < info->dlpi_phnum; k++)
         if (info->dlpi_phdr[k].p_type == PT_NOTE) {
-            // NOLINTNEXTLINE(performance-no-int-to-ptr): where the loader has put it
+            // NOLINTNEXTLINE(performance-no-int-to-ptr): address given by the loader
             const uint8_t *notes = (const uint8_t *)(info->dlpi_addr + info->dlpi_phdr[k].p_vaddr);
             append_id(text, notes, info->dlpi_phdr[k].p_memsz);
         }

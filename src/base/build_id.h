@@ -1,10 +1,10 @@
-/* Which build of the library runs. */
+/* Identifies the running build of the library. */
 #ifndef FLUIDY_BASE_BUILD_ID_H
 #define FLUIDY_BASE_BUILD_ID_H
 
 /**
- * The version and, where the linker has noted it, the build id: programs that have the same one
- * were made from the same code. Static; the first call is to be the only one at its time.
+ * The version and, where the linker has stored it, the build id: programs with equal ids were made
+ * from the same code. Static; the first call must not run beside another.
  */
 const char *fl_build_id(void);
 

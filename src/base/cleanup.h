@@ -1,4 +1,4 @@
-/* Teaches g_autoptr the types of cairo and librsvg, which do not declare it. */
+/* Declares g_autoptr for the types of cairo and librsvg, since those libraries do not. */
 #ifndef FLUIDY_BASE_CLEANUP_H
 #define FLUIDY_BASE_CLEANUP_H
 

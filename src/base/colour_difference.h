@@ -1,4 +1,4 @@
-/* How alike two colours look. */
+/* The visible difference of two colours. */
 #ifndef FLUIDY_BASE_COLOUR_DIFFERENCE_H
 #define FLUIDY_BASE_COLOUR_DIFFERENCE_H
 

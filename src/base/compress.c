@@ -35,7 +35,7 @@ size_t fl_compress(const FlSpan *parts, int n, uint8_t *to, size_t capacity)
     return LZ4F_isError(step) ? 0 : used;
 }
 
-/* Fills a part and advances *from. Returns: whether the part is full. */
+/* Fills a part and advances *from. Returns: true if the part is full. */
 static bool fill_part(LZ4F_dctx *context, const uint8_t **from, const uint8_t *end, FlSpan part,
                       size_t *left)
 {
@@ -57,7 +57,7 @@ bool fl_decompress(const uint8_t *from, size_t bytes, const FlSpan *parts, int n
     if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)))
         return false;
     const uint8_t *end = from + bytes;
-    size_t left = 1; // what the frame still needs; 0: it is complete
+    size_t left = 1; // bytes that the LZ4 frame still needs; 0: complete
     bool whole = true;
     for (int k = 0; k < n && whole; k++)
         whole = fill_part(context, &from, end, parts[k], &left);

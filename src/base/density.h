@@ -8,7 +8,7 @@
 /** Densities are -log2(level / 255) in steps of 1 / FL_DENSITY_ONE. */
 #define FL_DENSITY_ONE 65536
 
-/** The density of level 0, which has none: that of half a level. */
+/** The density of level 0, for which the logarithm is infinite: that of half a level. */
 #define FL_DENSITY_MAX 589451
 
 /** The density of an 8-bit level: 0 for 255, FL_DENSITY_MAX for 0. */

@@ -12,7 +12,7 @@ typedef struct FlDigest {
     uint64_t a, b;
 } FlDigest;
 
-/** Whether it is the digest of something. */
+/** Returns: true unless the digest is zero, which means unknown. */
 static inline bool fl_digest_is_known(FlDigest digest)
 {
     return digest.a || digest.b;

@@ -8,7 +8,7 @@ GQuark fl_error_quark(void)
     return g_quark_from_static_string("fl-error-quark");
 }
 
-/** Whether a character does something to a terminal or to the order of what is around it. */
+/** Returns: true if a character controls a terminal or the direction of the text around. */
 static bool is_active(gunichar c)
 {
     return c < 0x20 || (c >= 0x7f && c < 0xa0) || (c >= 0x202a && c <= 0x202e) ||

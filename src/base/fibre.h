@@ -4,11 +4,11 @@
 
 #include "base/rng.h"
 
-/** How fibres look. */
+/** The shape of fibres. */
 typedef struct FlFibre {
     float length_px; // mean
-    float curl;      // how fast they turn, 1: as paper's
-    float scale;     // by which a fibre is enlarged, and so its width, which is about a px
+    float curl;      // rate of turning; 1: like paper fibres
+    float scale;     // enlargement of a fibre, whose width is about a px at 1
 } FlFibre;
 
 /**

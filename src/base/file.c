@@ -30,7 +30,7 @@ bool fl_file_check(const char *path, FlError code, GError **error)
     return stat(path, &info) != 0 || is_regular(&info, path, code, error);
 }
 
-/** Whether there is something to read, or the end of it; false with an error. */
+/** Waits until fd has data or ends. Returns: false with an error. */
 static bool wait_for(int fd, const char *path, const FlFileWait *wait, GError **error)
 {
     const gint64 end = g_get_monotonic_time() + fl_limit(FL_LIMIT_SECONDS) * G_USEC_PER_SEC;

@@ -8,8 +8,8 @@
 #include <stddef.h>
 
 /**
- * Whether what stands at `path` can be read to its end: neither a pipe, whose writer may never
- * come, nor a device. A path with nothing at it passes: opening it says so better.
+ * Checks that the file at `path` can be read to its end: a pipe, whose writer may never come, or a
+ * device fails. A missing file passes, since the error of opening it is clearer.
  *
  * Returns: false with an error of `code` that starts with the path.
  */
@@ -23,7 +23,7 @@ bool fl_file_check(const char *path, FlError code, GError **error);
  */
 bool fl_file_read(const char *path, size_t most, char **data, size_t *bytes, GError **error);
 
-/** Who waits for what a pipe's writer has to say; `stopped` may be NULL. */
+/** Controls the wait for the data of a pipe; `stopped` may be NULL. */
 typedef struct FlFileWait {
     bool (*stopped)(void *data); // asked every tenth of a second
     void *data;
@@ -33,13 +33,13 @@ typedef struct FlFileWait {
  * As fl_file_read(), but a pipe or a device will do, such as the shell's <(…): waits for its end.
  *
  * A `wait` of NULL makes it fl_file_read(). Returns: false with FL_ERROR_INPUT,
- * FL_ERROR_INTERRUPTED if wait->stopped() says so, FL_ERROR_LIMIT if nothing comes for as many
- * seconds as a drawing may take.
+ * FL_ERROR_INTERRUPTED if wait->stopped() returns true, FL_ERROR_LIMIT if no data comes within the
+ * seconds that a drawing may take.
  */
 bool fl_file_read_pipe(const char *path, size_t most, const FlFileWait *wait, char **data,
                        size_t *bytes, GError **error);
 
-/** Writes all of the bytes; a signal that comes in does not stop it. Returns: false with errno. */
+/** Writes all of the bytes; a signal does not interrupt the writing. Returns: false with errno. */
 bool fl_write_all(int fd, const void *data, size_t bytes);
 
 /** The same from `offset` on, which is not moved. */

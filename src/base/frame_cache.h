@@ -1,4 +1,4 @@
-/* What was made for a frame, for the next one, in which most is the same. */
+/* Keeps the results of a frame for the next frame, which shares most of them. */
 #ifndef FLUIDY_BASE_FRAME_CACHE_H
 #define FLUIDY_BASE_FRAME_CACHE_H
 
@@ -12,7 +12,8 @@ typedef struct FlFrameCache {
 
 void fl_frame_cache_clear(FlFrameCache *cache);
 
-/** What is kept for a digest, or NULL, as for that of nothing; the cache's own. */
+/** The array that is kept for a digest, owned by the cache; NULL if absent, or if the digest is
+ * zero. */
 const GArray *fl_frame_cache_find(FlFrameCache *cache, FlDigest digest);
 
 /** Keeps things for this frame and the next; the cache owns them then. */

@@ -6,17 +6,18 @@
 #include <stdbool.h>
 
 /**
- * Whether there is memory for the small allocations of GLib, librsvg and OpenMP, and for the stacks
- * of all threads. Frames and fields, which are far larger, do not count: fl_alloc() reports their
- * failure. Call it when the number of threads is known, before files are read.
+ * Checks that there is memory for the small allocations of GLib, librsvg and OpenMP, and for the
+ * stacks of all threads. Frames and fields, which are far larger, do not count: fl_alloc() reports
+ * their failure. Call it when the number of threads is known, before files are read.
  *
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */
 bool fl_headroom_check(GError **error);
 
 /**
- * Whether a process whose address space was limited when it first asked still has memory for small
- * allocations. fl_alloc() fails where it has not, since only fl_alloc() can report that.
+ * Returns: true unless the address space was limited at the first call and too little is left for
+ * small allocations. In that case fl_alloc() fails, since only fl_alloc() can report the lack of
+ * memory.
  */
 bool fl_headroom_left(void);
 

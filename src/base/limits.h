@@ -18,8 +18,8 @@ int64_t fl_limit(FlLimit limit);
 void fl_limits_set_all(const int64_t limit[FL_N_LIMITS]);
 
 /**
- * Whether `wanted`, in the unit of limits.def, is within the limit. `where`, usually a file's name,
- * starts the message.
+ * Checks that `wanted`, in the unit of limits.def, is within the limit. `where`, usually a file's
+ * name, starts the message.
  *
  * Returns: false with FL_ERROR_LIMIT set, which says how to raise the limit.
  */

@@ -31,7 +31,7 @@ static int64_t least_on_path(const char *mount, char *group, const char *name)
     return least;
 }
 
-/* The limit of a line "number:controllers:/group"; version 2 has no controllers there. */
+/* The limit of a line "number:controllers:/group"; in version 2 the controllers are empty. */
 static int64_t group_mib(const char *root, const char *line)
 {
     g_auto(GStrv) field = g_strsplit(line, ":", 3);

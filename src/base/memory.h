@@ -5,19 +5,19 @@
 #include <stdint.h>
 
 /**
- * MiB, at least 1: the machine's memory, or less where a control group of the process, as that of a
- * container, has a limit. What the system does not report is unlimited.
+ * MiB, at least 1: the machine's memory, or less if a control group of the process, such as a
+ * container's, has a limit. A limit that the system does not report is infinite.
  *
- * root is "/", or a folder with proc/self/cgroup and sys/fs/cgroup as they are there.
+ * root is "/", or a folder that holds copies of proc/self/cgroup and sys/fs/cgroup.
  */
 int64_t fl_memory_mib(const char *root);
 
-/** Returns what has been freed to the system: holes between what is in use, too. It takes a
- * millisecond or so, and whatever uses these pages next has to fault them in. */
+/** Returns freed memory to the system, including holes between blocks in use. This takes about a
+ * millisecond, and the next use of these pages has to fault them in. */
 void fl_memory_trim(void);
 
 /** For work with large planes, from here on and in the whole process: each is mapped by itself and
- * returned to the system as soon as it is freed, so that no holes are left. */
+ * returned to the system as soon as it is freed, which avoids heap fragmentation. */
 void fl_memory_map_planes(void);
 
 /** For work with many small blocks: threads that begin from here on have heaps of their own, for

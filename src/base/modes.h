@@ -7,12 +7,13 @@
 /** Two translations, the rotation, the scale and two shears. */
 #define FL_MODES 6
 
-/** Normal equations of six unknowns; all 0 to begin with. */
+/** Normal equations of six unknowns; initially all 0. */
 typedef struct FlLeastSquares {
     double a[FL_MODES][FL_MODES], b[FL_MODES];
 } FlLeastSquares;
 
-/** What each mode moves the point (rx, ry) by, about the centre and in units of the size. */
+/** The displacement of the point (rx, ry) by each mode; relative to the centre, in units of the
+ * size. */
 void fl_modes_at(double rx, double ry, double mode[FL_MODES][2]);
 
 /** Adds weight * (row . p - value)². */

@@ -34,7 +34,7 @@ static void hash_cell(uint64_t key, int32_t ix, int32_t iy, Cell *cell)
 static const Cell *cell_at(uint64_t key, int32_t ix, int32_t iy)
 {
     Cell *cell = &memo[key % MEMO];
-    if (cell->key != key || cell->x != ix || cell->y != iy || key == 0) // which a fresh cell has
+    if (cell->key != key || cell->x != ix || cell->y != iy || key == 0) // key of an unused cell
         hash_cell(key, ix, iy, cell);
     return cell;
 }
@@ -80,15 +80,15 @@ float fl_noise_octaves(uint64_t key, float x, float y, int octaves, float gain)
 
 /* ---- rows ----------------------------------------------------------------------------------- */
 
-/* Places within their cells, and the slopes at the corners of those. */
+/* Positions within their cells, and the slopes at the corners of these cells. */
 typedef struct Row {
     int32_t ix[FL_NOISE_ROW], iy[FL_NOISE_ROW];
     float dx[FL_NOISE_ROW], dy[FL_NOISE_ROW];
     float slope[4][2][FL_NOISE_ROW];
 } Row;
 
-/* All of a row, whatever its length, so that the compiler makes vectors of it. A cast is a floor
- * but for what lies below 0. */
+/* Always handles a full row, whatever its length, so that the compiler vectorises the loop. A cast
+ * truncates; for negative numbers 1 is subtracted to get the floor. */
 static void find_cells(const float *restrict x, const float *restrict y, Row *restrict row)
 {
     for (int i = 0; i < FL_NOISE_ROW; i++) {

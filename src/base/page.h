@@ -1,4 +1,4 @@
-/* How large paint is on a page: the one place that says so. */
+/* Defines the scale of paint on a page. */
 #ifndef FLUIDY_BASE_PAGE_H
 #define FLUIDY_BASE_PAGE_H
 
@@ -7,8 +7,8 @@
 
 /**
  * Px of a picture of the page per px of paint and of paper. Paint belongs to the page and not to
- * its pixels: pictures of it of every size show one painting. On pages of less than a quarter of
- * FL_PAGE_PX paint stays as on those, since it would be finer than a patch.
+ * its pixels: pictures of all sizes show the same painting. On pages smaller than a quarter of
+ * FL_PAGE_PX the scale stays at a quarter, since paint would be finer than a patch.
  */
 static inline float fl_page_scale(int width, int height)
 {

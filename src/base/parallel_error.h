@@ -9,7 +9,7 @@
  */
 void fl_parallel_error_keep(GError **first, GError *failure);
 
-/** After the parallel part: moves `first` to `error`. Returns: true if there was none. */
+/** After the parallel part: moves `first` to `error`. Returns: true if `first` is NULL. */
 bool fl_parallel_error_propagate(GError **error, GError *first);
 
 #endif

@@ -5,7 +5,7 @@
 
 #define GAP_PX 16 // pixels without alpha that end a run
 
-/** Whether two pixels have no alpha. */
+/** Returns: true if two pixels are fully transparent. */
 static bool two_clear(const uint8_t *rgba)
 {
     static const uint8_t alpha[8] = {0, 0, 0, 255, 0, 0, 0, 255};
@@ -25,7 +25,7 @@ static int next_seen(const uint8_t *rgba, int x, int end)
     return x;
 }
 
-/** The first column from x on whose pixel has none. */
+/** The first column from x on whose pixel is fully transparent. */
 static int next_clear(const uint8_t *rgba, int x, int end)
 {
     while (x + 2 <= end && rgba[4 * x + 3] && rgba[4 * x + 7])
@@ -35,7 +35,7 @@ static int next_clear(const uint8_t *rgba, int x, int end)
     return x;
 }
 
-/** The next run of a row's pixels from column x on; no pixels: there is none. */
+/** The next run of a row's pixels from column x on; empty if there are no more. */
 static FlColumns next_run(const uint8_t *rgba, int x, int end)
 {
     FlColumns run = {next_seen(rgba, x, end), 0};

@@ -10,12 +10,12 @@
 /** Pixels of a row. */
 typedef struct FlPixelRun {
     FlColumns columns;
-    size_t at; // where they begin, in pixels
+    size_t at; // offset of the first one, in pixels
 } FlPixelRun;
 
 /** Straight RGBA; beside its runs, which begin and end with a pixel that is seen, it is clear. */
 typedef struct FlPixelRuns {
-    size_t *first; // the first run of each row, and behind them their number; NULL: nothing here
+    size_t *first; // the first run of each row, then the number of runs; NULL: no runs
     FlPixelRun *run;
     uint8_t *rgba;
 } FlPixelRuns;

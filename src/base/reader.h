@@ -17,7 +17,7 @@ typedef struct FlReader {
 void fl_put(GByteArray *out, const void *data, size_t bytes);
 void fl_put_int(GByteArray *out, int value);
 void fl_put_text(GByteArray *out, const char *text);          // NULL is ""
-void fl_put_texts(GByteArray *out, const char *const *texts); // ends in NULL; NULL: none
+void fl_put_texts(GByteArray *out, const char *const *texts); // ends in NULL; NULL is an empty list
 
 /** Puts n >= 0 items of `size` bytes, their number first. */
 void fl_put_items(GByteArray *out, const void *items, int n, size_t size);
@@ -52,16 +52,17 @@ int fl_take_in(FlReader *reader, int first, int last);
 /** A text within the bytes. */
 const char *fl_take_text(FlReader *reader);
 
-/** Texts, to be freed with g_strfreev(); NULL: there are none. */
+/** Texts, to be freed with g_strfreev(); NULL for an empty list. */
 char **fl_take_texts(FlReader *reader);
 
-/** Items of `size` bytes, after their number, to be freed with g_free(); NULL: there are none. */
+/** Reads a number and that many items of `size` bytes, to be freed with g_free(); NULL for 0 items.
+ */
 void *fl_take_items(FlReader *reader, size_t size, int *n);
 
 /** Notes whether what was taken is sound. Returns: whether all has been so far. */
 bool fl_take_check(FlReader *reader, bool sound);
 
-/** True if nothing has failed and no byte is left. */
+/** Returns: true if all reads have succeeded and all bytes are consumed. */
 bool fl_reader_ends(const FlReader *reader);
 
 #endif

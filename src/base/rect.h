@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/** Whether n bytes are 0; as fast as the C library compares. */
+/** Returns: true if n bytes are 0; as fast as memcmp(). */
 bool fl_is_blank(const uint8_t *bytes, size_t n);
 
 /** Columns x … x + width - 1, rows y … y + height - 1; empty if a size is 0. */
@@ -16,15 +16,15 @@ typedef struct FlRect {
     int x, y, width, height;
 } FlRect;
 
-/** From column x0 and row y0 to before x1 and y1; {0, 0, 0, 0} if nothing is between them. */
+/** From column x0 and row y0 to before x1 and y1; {0, 0, 0, 0} if that is empty. */
 static inline FlRect fl_rect_between(int x0, int y0, int x1, int y1)
 {
     return x0 < x1 && y0 < y1 ? (FlRect){x0, y0, x1 - x0, y1 - y0} : (FlRect){0, 0, 0, 0};
 }
 
-FlRect fl_rect_and(FlRect a, FlRect b); // what both have; {0, 0, 0, 0}: nothing
-FlRect fl_rect_or(FlRect a, FlRect b); // the smallest that holds both; empty ones count for nothing
-bool fl_rect_meet(FlRect a, FlRect b); // whether they share a pixel
+FlRect fl_rect_and(FlRect a, FlRect b); // the intersection; {0, 0, 0, 0} if empty
+FlRect fl_rect_or(FlRect a, FlRect b);  // the smallest that holds both; ignores empty ones
+bool fl_rect_meet(FlRect a, FlRect b);  // true if they share a pixel
 
 /** True if a rectangle, whose numbers may be anything, has a pixel and all are in `page`. */
 bool fl_rect_is_inside(FlRect rect, FlRect page);
@@ -35,7 +35,8 @@ FlRect fl_rect_grown(FlRect rect, int px, FlRect limit);
 /** Moves the left and the upper edge outwards to multiples of `grid`; x, y >= 0. */
 FlRect fl_rect_on_grid(FlRect rect, int grid);
 
-/** The smallest rectangle with every nonzero byte of a width * height plane; {0, 0, 0, 0}: none. */
+/** The smallest rectangle with every nonzero byte of a width * height plane; {0, 0, 0, 0} if all
+ * are 0. */
 FlRect fl_rect_of(const uint8_t *plane, int width, int height);
 
 /** The same within a part of a plane that is `width` wide. */
@@ -47,12 +48,12 @@ void fl_rect_clear(uint8_t *plane, int width, FlRect part);
 /** Copies the pixels that two rectangles of a frame share; from and to have one rectangle each. */
 void fl_rect_copy(const void *from, FlRect from_rect, void *to, FlRect to_rect, size_t pixel_bytes);
 
-/** Columns first … last - 1; none if first >= last. */
+/** Columns first … last - 1; empty if first >= last. */
 typedef struct FlColumns {
     int first, last;
 } FlColumns;
 
-/** Where a shape is in a frame; many are far smaller than the rectangle around them. */
+/** The area of a shape in a frame; many shapes are far smaller than their bounding rectangle. */
 typedef struct FlArea {
     FlRect box;
     FlColumns *row; // of each row of the box, within 0 … box.width; NULL: rows are full
@@ -70,7 +71,7 @@ static inline FlColumns fl_area_row(const FlArea *area, int y)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlArea, fl_area_clear)
 
-/** Whether eight bytes are 0. */
+/** Returns: true if eight bytes are 0. */
 static inline bool fl_eight_blank(const uint8_t *bytes)
 {
     uint64_t eight;

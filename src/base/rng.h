@@ -29,7 +29,7 @@ static inline uint64_t fl_key(uint64_t key, uint64_t place)
     return fl_hash64(key ^ fl_hash64(place));
 }
 
-/** A stream that starts at key; every call of the functions below advances it. */
+/** A stream that starts at key; every call of the functions below advances the stream. */
 typedef struct FlRng {
     uint64_t state;
 } FlRng;

@@ -33,7 +33,7 @@ const FlRowKernels *fl_row_kernels_for(unsigned flags)
     if (flags & FL_CPU_AVX2)
         return &fl_row_kernels_avx2;
 #endif
-    return &fl_row_kernels_c; // which on ARM has NEON
+    return &fl_row_kernels_c; // the compiler uses NEON in it on ARM
 }
 
 const FlRowKernels *fl_row_kernels(void)

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** What the processor can do; a level includes those below it. */
+/** Instruction sets of the processor; a level includes all lower levels. */
 enum {
     FL_CPU_AVX2 = 1,
     FL_CPU_AVX512 = 2,
@@ -21,21 +21,21 @@ typedef struct FlSums {
     uint32_t *x[3], *a;
 } FlSums;
 
-/** A row of a layer among those above it, for fl_layers_resolve(). */
+/** A row of a layer that upper layers occlude, for fl_layers_resolve(). */
 typedef struct FlOcclusion {
     const uint8_t *coverage; // of the whole shape, 0..255
     const uint8_t *seen;     // its visible part of each pixel, 0..255
     const uint8_t *knockout; // of its paint, 0..255; NULL: 255
     int alpha;               // opacity of the layer, 0..255
-    bool knocks;             // whether it hides what lies below
+    bool knocks;             // true if the layer hides those below
 } FlOcclusion;
 
 /** Every other cell of a row of a diffusion grid, with its neighbours. */
 typedef struct FlStencil {
     float *value;
-    const float *beside; // beside[i] is the value left of cell i, beside[i + 1] the one right of it
+    const float *beside; // beside[i] is the value left of cell i, beside[i + 1] the value right
     const float *above, *below;
-    const float *source;  // what flows in from elsewhere
+    const float *source;  // inflow from elsewhere
     const float *inverse; // 1 / number of neighbours; 0 in a cell that keeps its value
 } FlStencil;
 
@@ -46,7 +46,7 @@ typedef struct FlContourPiece {
     float half;   // a disc's radius
 } FlContourPiece;
 
-enum { FL_LINKS = 8 }; // of a piece to those around it
+enum { FL_LINKS = 8 }; // links of a piece to its neighbours
 
 /** The pieces around one, side by side; where there are fewer, the rest are that piece itself. */
 typedef struct FlContourLinks {
@@ -116,7 +116,7 @@ typedef struct FlRowKernels {
     void (*level_opaque)(const FlSums *sums, uint32_t *rgba, int n);
 
     /** Composite, from the top down: sets the stored alpha of a layer; adds its paint and its
-     * knock-out to those of the layers above it. */
+     * knock-out to the sums of the upper layers. */
     void (*occlude)(const FlOcclusion *layer, uint32_t *rgba, uint16_t *paint, uint8_t *area,
                     int n);
 

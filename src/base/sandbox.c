@@ -31,7 +31,7 @@
 #endif
 #define FIRST_VERSION ((LANDLOCK_ACCESS_FS_MAKE_SYM << 1) - 1)
 
-/** Where libraries, their modules and fonts lie. */
+/** The folders of libraries, their modules and fonts. */
 static const char *const system_paths[] = {"/usr",
                                            "/lib",
                                            "/lib64",
@@ -46,7 +46,7 @@ static const char *const system_paths[] = {"/usr",
 
 /**
  * The accesses that the kernel's version of Landlock can refuse, or version `most` if that is
- * lower; 0: it has none. The list of system calls refuses what older versions leave open.
+ * lower; 0: no Landlock. The list of system calls refuses what older versions leave open.
  */
 static uint64_t known_accesses(int most)
 {
@@ -124,9 +124,9 @@ static bool give_up_files(const char *const *paths, int most)
 #endif
 #define CALL(name) SCMP_SYS(name)
 
-/* What reading files, drawing, threads and memory take. All else is refused. */
+/* The system calls for reading files, drawing, threads and memory. All others are refused. */
 static const int allowed[] = {
-    // what is open, and its descriptor
+    // open files and their descriptors
     CALL(read),
     CALL(readv),
     CALL(pread64),

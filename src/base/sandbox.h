@@ -1,4 +1,4 @@
-/* What a process gives up before it reads strangers' files. */
+/* Restricts a process before it reads files that are not trusted. */
 #ifndef FLUIDY_BASE_SANDBOX_H
 #define FLUIDY_BASE_SANDBOX_H
 
@@ -26,7 +26,7 @@ typedef enum FlSandbox {
  */
 unsigned fl_sandbox_enter(const char *const *paths, int64_t mib, int most);
 
-/** Why a process that gave that up is not confined; NULL: it gave up all. */
+/** The reason why a process with these restrictions is not fully confined; NULL if it is. */
 const char *fl_sandbox_lacks(unsigned given_up);
 
 #endif

@@ -75,7 +75,7 @@ static int by_turn(const void *a, const void *b)
     return (p->index > q->index) - (p->index < q->index);
 }
 
-/* How many of the items, which are in the order of their turns, all threads do together. */
+/* The number of items, from the first in order, that all threads work on together. */
 static int count_together(const FlWorkItem *items, int n)
 {
     double beside = 0, together = 0, least = INFINITY;

@@ -22,20 +22,22 @@ int fl_schedule_set_threads(int n);
 /** The size of the team that runs the innermost parallel region around the caller, >= 1. */
 int fl_schedule_team_size(void);
 
-/** Whether a loop over so many pixels is worth a team: fewer are done before a team wakes up. */
+/** Returns: true if a loop over so many pixels is worth a team of threads: fewer are done before a
+ * team wakes up. */
 static inline bool fl_schedule_worth_threads(size_t pixels)
 {
     return pixels > (size_t)1 << 15;
 }
 
 /**
- * Whether one area of that many pixels per thread fits into a frame. Such areas are processed side
- * by side, a thread each, and larger ones by all threads together, so that scratch never takes
- * more than that of a whole frame.
+ * Returns: true if one area of that many pixels per thread fits into a frame. Such areas are
+ * processed side by side, a thread each, and larger ones by all threads together, so that scratch
+ * never takes more than that of a whole frame.
  */
 bool fl_schedule_fits_beside(size_t pixels, size_t frame_pixels);
 
-/** How many times as fast all threads together do what one does: they wait for each other. */
+/** The speed of all threads on one item relative to one thread; below their number, since they wait
+ * for each other. */
 double fl_schedule_gain(void);
 
 /** One of several pieces of work. */
@@ -53,10 +55,11 @@ typedef bool (*FlItemWork)(void *data, int index, int thread, GError **error);
  * Does all items: those that are alone and the most expensive of the others in turn with all
  * threads, outside any team, since inside one, even of one thread, a search would start and end its
  * own threads at every step; then the rest side by side, a thread each, the most expensive first,
- * so that none is left for the end. How many are done in turn is what takes least by their costs.
+ * so that no expensive item is left for the end. The number of items done in turn is the one with
+ * the least total time by their costs.
  *
- * Reorders the items. Returns: false with the first error; nothing follows an item of all threads
- * that fails.
+ * Reorders the items. Returns: false with the first error; after a failed item of all threads no
+ * further item starts.
  */
 bool fl_schedule_run(FlWorkItem *items, int n, FlItemWork work, void *data, GError **error);
 

@@ -93,7 +93,7 @@ static int64_t reserve(size_t bytes)
 bool fl_spill_put(FlSpill *spill, size_t block, const void *data, size_t bytes, GError **error)
 {
     g_assert(block < spill->n_blocks);
-    const FlSpan part = {(void *)(uintptr_t)data, bytes}; // which is only read
+    const FlSpan part = {(void *)(uintptr_t)data, bytes}; // const: the data is only read
     const size_t room = fl_compress_bound(&part, 1);
     g_autofree uint8_t *packed = fl_alloc_scratch(room, 1, "a temporary block", error);
     if (!packed)

@@ -6,8 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/** Blocks are compressed into an unlinked file in $TMPDIR, which all spills of the process share:
- * nothing is left behind. */
+/** Blocks are compressed into an unlinked file in $TMPDIR, which all spills of the process share
+ * and which vanishes with the process. */
 typedef struct FlSpill FlSpill;
 
 /** For blocks 0 … n_blocks - 1. Returns: NULL with FL_ERROR_OUTPUT set. */
@@ -15,7 +15,7 @@ FlSpill *fl_spill_new(size_t n_blocks, GError **error);
 
 void fl_spill_free(FlSpill *spill); // NULL is fine
 
-/** Stores a block, or replaces it. One thread at a time. */
+/** Stores or replaces a block. One thread at a time. */
 bool fl_spill_put(FlSpill *spill, size_t block, const void *data, size_t bytes, GError **error);
 
 /** Reads a block of exactly `bytes` bytes, as stored. Several threads may read. */

@@ -11,7 +11,7 @@
 
 typedef struct Piece {
     FlSpan span;   // of a part
-    size_t at;     // where it begins behind the list
+    size_t at;     // its offset after the list
     uint32_t used; // bytes there
 } Piece;
 

@@ -6,7 +6,7 @@
 #include <fluidy/error.h>
 
 /**
- * A header of `size` bytes, NULL for none, and `n` parts behind it; with n == 0 the header alone.
+ * Packs a header of `size` bytes (NULL: no header) and then `n` parts, which may be 0.
  *
  * Returns: to be freed with g_bytes_unref(); NULL with FL_ERROR_NO_MEMORY.
  */

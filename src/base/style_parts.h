@@ -1,4 +1,4 @@
-/* Where the files of a style lie: in its folder, and in these below it. */
+/* The folders that hold the files of a style, relative to its own folder. */
 #ifndef FLUIDY_BASE_STYLE_PARTS_H
 #define FLUIDY_BASE_STYLE_PARTS_H
 

@@ -12,18 +12,19 @@
  */
 int fl_edit_distance(const char *a, const char *b);
 
-/** Whether at most a third of the letters of `known`, or one, would have to change. */
+/** Returns: true if at most a third of the letters of `known`, or one letter, would have to change.
+ */
 bool fl_resembles(const char *word, const char *known);
 
 /**
  * The word of the NULL-terminated list `words` that is nearest to `word`, the first of equals.
  *
- * Returns: an element of `words`; NULL if it resembles none.
+ * Returns: an element of `words`; NULL if no word is similar.
  */
 const char *fl_suggest(const char *word, const char *const *words);
 
 /**
- * The tail of an error message: "; did you mean “w-temp”?", or "" when nothing is near.
+ * The tail of an error message: "; did you mean “w-temp”?", or "" if no word is similar.
  *
  * Returns: to be freed with g_free(); never NULL.
  */

@@ -7,7 +7,7 @@
 
 typedef bool (*FlWork)(void *data, GError **error);
 
-/** All 0: nothing is running. */
+/** All 0: no work is running. */
 typedef struct FlTask {
     FlWork work;
     void *data;
@@ -23,7 +23,7 @@ typedef struct FlTask {
  */
 void fl_task_start(FlTask *task, FlWork work, void *data, bool beside);
 
-/** Waits for the work. Returns: true if it succeeded or none was started; else false with its
+/** Waits for the work. Returns: true if it succeeded or no work was started; else false with its
  * error. */
 bool fl_task_wait(FlTask *task, GError **error);
 

@@ -1,4 +1,4 @@
-/* The tooth of a sheet of paper, for what is painted or drawn on it. */
+/* The tooth of a sheet of paper, which paint and pencils catch on. */
 #ifndef FLUIDY_BASE_TOOTH_H
 #define FLUIDY_BASE_TOOTH_H
 

@@ -7,9 +7,9 @@
 /** One warning. The same one about the same element in later frames only raises n_frames. */
 typedef struct FlWarning {
     char *file;    // the first file that caused it
-    char *element; // id of the element, "" if it is about the whole file
+    char *element; // id of the element; "" for the whole file
     char *text;    // one line, without the names above and without a full stop
-    int frame;     // number of the first frame, as in its file's name; -1: none
+    int frame;     // number of the first frame, as in its file's name; -1: no frame
     int last;      // number of the last
     int n_frames;  // frames that caused it, >= 1
 } FlWarning;
