@@ -139,7 +139,7 @@ static bool dump_motion(const Dump *dump, const FlGuides *guides, GError **error
     return write_flo(dump, &(Plane){"motion", motion, 2, 0, 0}, error);
 }
 
-/* The field in the frame's size, and a picture of it: x, y and frame as red, green, blue. */
+/* Writes the field in the frame's size and as a picture: x, y and frame as red, green, blue. */
 static bool dump_field(const Dump *dump, const FlSynthView *view, GError **error)
 {
     const int width = dump->painted->width, height = dump->painted->height;

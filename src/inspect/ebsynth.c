@@ -150,7 +150,7 @@ bool fl_ebsynth_frame(const char *folder, const FlPaintedRegion *painted, const 
 {
     g_autofree char *region = g_build_filename(folder, painted->name, NULL);
     const Step step = {region, number};
-    g_mkdir_with_parents(region, 0777); // what is in its way is an error of the first file
+    g_mkdir_with_parents(region, 0777); // a failure is reported by the first file
     if (pairs || before >= 0)
         return write_step(&step, pairs, before, error);
     g_autofree char *name = picture_name(&step, "out", "");

@@ -13,9 +13,9 @@ bool fl_ebsynth_begin(const char *folder, GError **error);
  * and WHAT_target_NUMBER.png of each pair, and run_NUMBER.sh, which makes out_NUMBER.png of them,
  * as large as painted->rect: FL_EBSYNTH_OUTPUT.
  *
- * pairs NULL: nothing was synthesised. run_NUMBER.sh then copies the output of frame `before`;
- * without one (-1), or where the region is not in the frame, out_NUMBER.png is written at once: the
- * paint as it is. Returns: false with FL_ERROR_OUTPUT or FL_ERROR_NO_MEMORY set.
+ * pairs NULL: the frame was not synthesised. run_NUMBER.sh then copies the output of frame
+ * `before`; without one (-1), or where the region is not in the frame, out_NUMBER.png is written at
+ * once: the paint as it is. Returns: false with FL_ERROR_OUTPUT or FL_ERROR_NO_MEMORY set.
  */
 bool fl_ebsynth_frame(const char *folder, const FlPaintedRegion *painted, const FlGuidePairs *pairs,
                       int number, int before, GError **error);

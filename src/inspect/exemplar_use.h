@@ -1,4 +1,4 @@
-/* How often each part of a recording is used: repeats show as bright spots. */
+/* Counts the uses of each part of a recording: repeats show as bright spots. */
 #ifndef FLUIDY_INSPECT_EXEMPLAR_USE_H
 #define FLUIDY_INSPECT_EXEMPLAR_USE_H
 
@@ -17,7 +17,8 @@ typedef struct FlExemplarUse {
 bool fl_exemplar_use_init(FlExemplarUse *use, const FlStyleInstance *style, GError **error);
 void fl_exemplar_use_clear(FlExemplarUse *use);
 
-/** Counts the matches of a region painted from use->style; without a view it has none. */
+/** Counts the matches of a region painted from use->style; a region without a view has no matches.
+ */
 void fl_exemplar_use_add(FlExemplarUse *use, const FlPaintedRegion *painted);
 
 /**

@@ -9,14 +9,14 @@ typedef struct Task {
     double share;     // of the whole work
 } Task;
 
-/* What a plan is printed from. */
+/* The data of a printed plan. */
 typedef struct Farm {
     const FlPlan *plan;
     char *folder, *paint;       // the working directory; the files between tasks and merge
     const char *const *command; // the render's
     GArray *tasks;              // of Task, largest first
     int n_parts;                // of the merge
-    bool film;                  // which is made of the frames, after the parts
+    bool film;                  // a film is encoded from the frames after the parts
 } Farm;
 
 static void clear_task(Task *task)
@@ -69,9 +69,9 @@ static int count_painted(const FlPlan *plan)
     return n;
 }
 
-/* Every task reads the whole drawing, so none is smaller than a quarter of the largest region or a
- * sixty-fourth of the work: small regions share one. What is hidden in all frames is painted by
- * nobody. */
+/* Every task reads the whole drawing, so each has at least a quarter of the largest region's work
+ * and a sixty-fourth of the whole work: small regions share one. Regions that are hidden in all
+ * frames are left out. */
 static void make_tasks(Farm *farm)
 {
     const FlPlan *plan = farm->plan;
@@ -112,7 +112,8 @@ static int count_parts(const FlPlan *plan)
 
 /* ---- commands ------------------------------------------------------------------------------- */
 
-/* How many words from here on are of the merge alone: what it writes, and what exists of that. */
+/* The number of words, from here on, of an option that only the merge gets: for outputs and for
+ * existing files. */
 static int words_of_merge(const char *const *word)
 {
     static const char *const values[] = {"-o", "--output", "--layers", "--stats", NULL};
@@ -123,7 +124,7 @@ static int words_of_merge(const char *const *word)
     return g_strv_contains(values, *word) && word[1] ? 2 : 0;
 }
 
-/* What is done after one another, each with commands that differ in one word. */
+/* The steps in order; the commands of a step differ in one word. */
 typedef enum Step {
     STEP_PAINT, // by the regions of a task
     STEP_MERGE, // by part
@@ -152,7 +153,7 @@ static void add_all(GPtrArray *words, const char *const *more)
         g_ptr_array_add(words, g_strdup(*more));
 }
 
-#define VARIABLE 2 // where the word is in which commands differ
+#define VARIABLE 2 // index of the word in which commands differ
 
 /* The words of a command. A part keeps frames that exist, as of an earlier try, unless they are to
  * be replaced. To be freed. */
@@ -196,7 +197,7 @@ static bool refuse_word(const char *word, const char *dialect, GError **error)
     return false;
 }
 
-/* Names that a dialect cannot hold as they are would be other names in it. */
+/* Fails if a dialect cannot express a name exactly, since it would be read as another name. */
 static bool words_fit(const Farm *farm, const char *dialect, bool (*fits)(const char *),
                       GError **error)
 {
@@ -339,7 +340,7 @@ static void add_slurm_body(GString *text, const Farm *farm, Step step)
                           "exit $status\n");
 }
 
-/* Submits a step, after the one before it. */
+/* Submits a step that starts after the previous step. */
 static void add_slurm_step(GString *text, const Farm *farm, Step step)
 {
     const int n = n_commands(farm, step);
@@ -476,9 +477,9 @@ char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *cons
                    GError **error)
 {
     FlRenderOptions whole = *options;
-    whole.dry_run = true; // nothing is written
+    whole.dry_run = true; // only plans
     whole.cache = NULL;
-    whole.merge = true; // what the merge shows is what is painted
+    whole.merge = true; // the merge's visible regions are painted
     whole.paint = options->paint ? options->paint : "{region}_%04d.png";
     if (options->only_region || options->merge || options->part || options->report ||
         options->dump || options->ebsynth) {

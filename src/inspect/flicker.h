@@ -1,4 +1,4 @@
-/* How much paint changes from frame to frame, where it stays inside its region. */
+/* The change of paint from frame to frame, where it stays inside its region. */
 #ifndef FLUIDY_INSPECT_FLICKER_H
 #define FLUIDY_INSPECT_FLICKER_H
 
@@ -18,7 +18,7 @@ void fl_flicker_clear(FlFlicker *flicker);
  * guides are the new frame's.
  *
  * Sets flicker->change to the mean absolute difference of luma, in levels of 255, over the pixels
- * that lie in the region before and after; NAN if there are none. FL_ERROR_NO_MEMORY.
+ * that lie in the region before and after; NAN without such pixels. Errors: FL_ERROR_NO_MEMORY.
  */
 bool fl_flicker_measure(FlFlicker *flicker, const FlPaintedRegion *painted, const FlGuides *guides,
                         GError **error);

@@ -2,9 +2,9 @@
 
 #include <float.h>
 
-#define LOST_PX 2.0f // farther than this from the point nothing came from it
+#define LOST_PX 2.0f // search radius around the point
 
-/* How a pixel moved into the frame, px. */
+/* The motion of a pixel into the frame: px, and turns of the drawing. */
 typedef struct Step {
     float x, y, turn;
 } Step;

@@ -20,7 +20,7 @@ typedef enum FlGuidePicture {
 typedef struct FlGuideView {
     FlPicture *picture[FL_GUIDE_PICTURES];
     float *flow;    // 2 per pixel: px of the picture per frame
-    int16_t *owner; // 1 + index of the painter that the pixel belongs to; 0: none
+    int16_t *owner; // 1 + index of the pixel's painter; 0: bare
 } FlGuideView;
 
 bool fl_guide_view_init(FlGuideView *view, int width, int height, GError **error);

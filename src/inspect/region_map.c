@@ -162,7 +162,8 @@ static char *glob_of(const char *label, bool numbered)
     return g_string_free(g_string_append(glob, ends ? "" : "-*"), FALSE);
 }
 
-/* Whether a glob matches `region`, and others only if they are alike but for numbers in labels. */
+/* Returns: true if a glob matches `region`, and others only if their labels differ in numbers
+ * alone. */
 static bool tells_apart(const Subject *subject, const char *glob, int region)
 {
     const FlRegion *r = fl_drawing_region(subject->drawing, region);
@@ -181,8 +182,9 @@ static bool tells_apart(const Subject *subject, const char *glob, int region)
 }
 
 /*
- * A section lasts while a drawing is edited: it is for a label, or a class, and for a paint only
- * where nothing else tells regions apart. Returns: its name; *match: another line of it, or NULL.
+ * The name of a section should survive edits of the drawing: it is a label or a class; a paint only
+ * if no label or class distinguishes the region. Returns: the name; *match: another line of the
+ * section, or NULL.
  */
 static char *section_of(const Subject *subject, int region, char **match)
 {

@@ -15,8 +15,8 @@
 #include <string.h>
 
 #define MAX_SIDE 480       // px of a picture in the page
-#define GOOD_SIDE 240      // below it, let the page grow instead
-#define MIN_SIDE 120       // below it, leave out frames instead
+#define GOOD_SIDE 240      // the page grows rather than go below
+#define MIN_SIDE 120       // frames are left out rather than go below
 #define PAGE_PIXELS (6e6)  // of all painted pictures together: a page of about 12 MB
 #define MOST_PIXELS (24e6) // the same of long films: decoded, 300 MB in a browser
 #define GUIDE_FRAMES 3     // frames whose guides are shown
@@ -124,7 +124,7 @@ void fl_report_free(FlReport *report)
     g_free(report);
 }
 
-/* The middles of equal parts of the film, or the frames that are held there. */
+/* Returns: true at the middles of equal parts of the film, rounded down to a painted frame. */
 static bool shows_guides(const FlReport *report, int frame)
 {
     const int n = fl_drawing_frames(report->plan->drawing);
@@ -224,8 +224,8 @@ static void write_painters(FlReport *report, const FlReportFrame *frame)
     fputc(']', out);
 }
 
-/* [x, y, turn, found] of each painter's point, or null. Those of frames without pictures only move
- * it: what was found there counts as found in the next picture. */
+/* [x, y, turn, found] of each painter's point, or null. In a frame without pictures the points only
+ * move; `found` is kept for the next picture. */
 static void write_points(FlReport *report, bool pictures)
 {
     FILE *out = report->out;
@@ -351,7 +351,7 @@ static bool write_uses(const FlReport *report, GError **error)
     return true;
 }
 
-/* What is known before the first frame. */
+/* Writes the facts that are known before the first frame. */
 static void write_film(const FlReport *report)
 {
     FILE *out = report->out;

@@ -5,10 +5,10 @@
 #include "compose/composite.h"
 #include "job/plan.h"
 
-/** Whether the report goes to standard output. */
+/** Returns: true if the report goes to standard output. */
 bool fl_report_streams(const FlRenderOptions *options);
 
-/** Whether there is a report with figures and guides, for which everything is painted. */
+/** Returns: true if there is a report with figures and guides, which needs all regions painted. */
 bool fl_report_measures(const FlRenderOptions *options);
 
 /** A report being written. Its memory does not grow with the number of frames. */
@@ -35,22 +35,22 @@ FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, cons
 
 void fl_report_free(FlReport *report); // NULL is fine
 
-/** Whether fl_report_guides() needs the views of a frame; false if report is NULL. */
+/** Returns: true if fl_report_guides() needs the views of a frame; false if report is NULL. */
 bool fl_report_wants_view(const FlReport *report, int frame);
 
 /**
  * Adds the guides and the field of region p, which has just been painted. Any thread, regions in
- * any order; does nothing if report is NULL. FL_ERROR_NO_MEMORY.
+ * any order; report may be NULL. Errors: FL_ERROR_NO_MEMORY.
  */
 bool fl_report_guides(FlReport *report, int p, const FlPaintedRegion *painted, int frame,
                       const FlGuides *guides, GError **error);
 
-/** Adds a finished frame; frames come in order. Does nothing if report is NULL. FL_ERROR_INPUT,
+/** Adds a finished frame; frames come in order; report may be NULL. Errors: FL_ERROR_INPUT,
  * FL_ERROR_NO_MEMORY. */
 bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **error);
 
-/** Completes the file; does nothing if report is NULL. On FL_ERROR_OUTPUT or FL_ERROR_EXISTS an
- * older file stays. */
+/** Completes the file; report may be NULL. On FL_ERROR_OUTPUT or FL_ERROR_EXISTS an older file
+ * stays. */
 bool fl_report_finish(FlReport *report, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlReport, fl_report_free)
