@@ -18,7 +18,7 @@ static bool settle(const float *alpha, float *filled, int width, int height, int
     return changes;
 }
 
-/* Sweeps down and up until nothing changes: the same whatever the order. */
+/* Sweeps down and up until all pixels are settled; the result does not depend on the order. */
 static void fill_holes(const float *alpha, int width, int height, float *filled)
 {
     for (bool changes = true; changes;) {
@@ -87,7 +87,7 @@ void fl_fluid_exemplar_clear(FlFluidExemplar *fluid)
     *fluid = (FlFluidExemplar){0};
 }
 
-/* The mask without the margin in which the paper is bare: fluid would be as bare there. */
+/* The mask without its margin of bare paper, which would become bare fluid. */
 static float alpha_of(const FlExemplar *exemplar, size_t p)
 {
     const float inside = CLAMP(exemplar->distance[p] + 0.5f, 0, 1);
@@ -95,8 +95,8 @@ static float alpha_of(const FlExemplar *exemplar, size_t p)
     return exemplar->margin_px > 0 && !exemplar->cut_out ? MIN(covered, inside) : covered;
 }
 
-/* Colour and alpha of a frame into four planes; of a cut-out without its paper, so that votes and
- * distances know nothing of colours that are not seen. */
+/* Colour and alpha of a frame into four planes; for a cut-out without its paper, so that invisible
+ * colours do not affect votes and distances. */
 static void fill_colour(const FlExemplar *exemplar, int t, float *const plane[4])
 {
     const FlExemplarLevel *full = &exemplar->level[0];

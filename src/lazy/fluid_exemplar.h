@@ -1,4 +1,4 @@
-/* The exemplar as LazyFluids reads it: one frame and the one before, on every level. */
+/* The exemplar as LazyFluids reads it: one frame and its predecessor, on every level. */
 #ifndef FLUIDY_LAZY_FLUID_EXEMPLAR_H
 #define FLUIDY_LAZY_FLUID_EXEMPLAR_H
 
@@ -8,10 +8,10 @@
 typedef struct FlFluidLevel {
     FlFluidPicture picture;
     FlFluidSegments segments;
-    FlExemplarLevel voted; // what fl_vote() reads of one frame, RGBA; the rest is empty
+    FlExemplarLevel voted; // RGBA of one frame for fl_vote(); other fields are empty
 } FlFluidLevel;
 
-/** Zeroed: nothing. */
+/** All 0: empty. */
 typedef struct FlFluidExemplar {
     int n_levels, frame, before; // before: the frame of the past
     FlFluidLevel level[FL_MAX_LEVELS];
@@ -19,8 +19,8 @@ typedef struct FlFluidExemplar {
 
 /**
  * Packs two frames of a style, colours as they are on its paper and alpha from the masks; of a
- * cut-out colours times its alpha. Nothing is done where they are packed already. Both must be in
- * the exemplar's window. sigma_px: of the blur of alpha; weights and n_levels must not change.
+ * cut-out colours times its alpha. Does not pack the same frames twice. Both must be in the
+ * exemplar's window. sigma_px: of the blur of alpha; weights and n_levels must not change.
  */
 bool fl_fluid_exemplar_pack(FlFluidExemplar *fluid, const FlExemplar *exemplar, int frame,
                             int before, int n_levels, float sigma_px, const FlFluidWeights *weights,
@@ -28,13 +28,13 @@ bool fl_fluid_exemplar_pack(FlFluidExemplar *fluid, const FlExemplar *exemplar, 
 void fl_fluid_exemplar_clear(FlFluidExemplar *fluid);
 
 /**
- * The planes that are packed, on level 0; they are made by it. Returns: false with
- * FL_ERROR_NO_MEMORY set; planes need clearing in any case.
+ * Makes the planes that are packed, on level 0. Returns: false with FL_ERROR_NO_MEMORY set; planes
+ * need clearing in any case.
  */
 bool fl_fluid_exemplar_planes(const FlExemplar *exemplar, int frame, int before, float sigma_px,
                               FlFluidPlanes *planes, GError **error);
 
-/** A picture for fl_vote(), to be filled channel by channel; `colour` is to be freed. */
+/** Makes a picture for fl_vote(), to be filled channel by channel; `colour` is to be freed. */
 bool fl_fluid_splines_init(FlExemplarLevel *level, int width, int height, GError **error);
 
 /** Straightens the plane of channel c, which is overwritten. */

@@ -79,7 +79,7 @@ void fl_fluid_picture_clear(FlFluidPicture *picture)
     *picture = (FlFluidPicture){0};
 }
 
-/* What 1.0 is in the channel of a plane. */
+/* The integer that stands for 1.0, per plane. */
 static void scales_of(const FlFluidWeights *weights, float scale[FL_FLUID_PLANES])
 {
     const float past = sqrtf(weights->past), alpha = sqrtf(3);

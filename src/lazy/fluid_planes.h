@@ -18,8 +18,8 @@ typedef enum FlFluidPlane {
 /** One level; planes are row-major, width * height. */
 typedef struct FlFluidPlanes {
     int width, height;
-    float *plane[FL_FLUID_PLANES]; // NULL: not there, as if it were 0 all over
-    float *all;                    // the memory of those that are
+    float *plane[FL_FLUID_PLANES]; // NULL: absent, equal to a plane of zeros
+    float *all;                    // the memory of the present planes
 } FlFluidPlanes;
 
 /** Makes planes `first` to `end`, without the latter. */
@@ -33,7 +33,7 @@ bool fl_fluid_planes_halve(const FlFluidPlanes *fine, FlFluidPlanes *coarse, GEr
 /** Blurs plane FL_FLUID_PLANE_EDGE, in which the mask stands [L15 §4.2]. */
 bool fl_fluid_planes_blur(FlFluidPlanes *planes, float sigma_px, GError **error);
 
-/** The terms' weights in (9): eta and lambda; colour has 1, alpha 3 of that. */
+/** The terms' weights in (9): eta and lambda; colour has weight 1, alpha weight 3. */
 typedef struct FlFluidWeights {
     float edge, past;
 } FlFluidWeights;

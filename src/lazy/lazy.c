@@ -36,9 +36,10 @@ struct FlLazy {
     uint64_t key;
     FlLazyState last;
     FlFluidExemplar source;     // of the frame in hand
-    Level level[FL_MAX_LEVELS]; // likewise; after it, the planes of level 0 where they are shown
+    Level level[FL_MAX_LEVELS]; // likewise; the planes of level 0 are kept after the frame if it is
+                                // inspected
     FlNnf warm;                 // likewise: the carried field; empty in a first frame
-    float *motion;              // likewise: 2 per pixel; NULL: there is none
+    float *motion;              // likewise: 2 per pixel; NULL if there is no motion
     bool shows;                 // the frame in hand is inspected when it is painted
 };
 
@@ -182,7 +183,7 @@ static bool take_guides(FlLazy *lazy, FlGuides *guides, GError **error)
 
 /* ---- a level --------------------------------------------------------------------------------- */
 
-/* The last field in the size of a level; none in a first frame. */
+/* The last field in the size of a level; empty in a first frame. */
 static bool warm_field(FlLazy *lazy, int l, FlNnf *warm, GError **error)
 {
     if (l == 0)
@@ -205,8 +206,8 @@ static FlMatch random_match(const FlFluidLevel *source, int segment, uint64_t ke
     return (FlMatch){.x_16 = (uint16_t)(16 * (p % width)), .y_16 = (uint16_t)(16 * (p / width))};
 }
 
-/* A match for every pixel of the segments and none elsewhere: the carried one, else as it is, else
- * a random one. */
+/* Gives each pixel of the segments a match: the carried one, else the present one, else a random
+ * one. Clears the matches elsewhere. */
 static void complete(const FlLazy *lazy, int l, const FlNnf *warm, uint64_t key)
 {
     const Level *level = &lazy->level[l];
@@ -249,7 +250,7 @@ static bool start_field(FlLazy *lazy, int l, uint64_t key, GError **error)
     return true;
 }
 
-/* Nothing but paper, for pixels for which no patch votes. */
+/* Fills pixels without votes with bare paper. */
 static void fill_paper(const FlExemplar *exemplar, int pixels, float *rgba)
 {
     for (int p = 0; p < pixels; p++) {
@@ -406,7 +407,7 @@ static bool prepare(FlLazy *lazy, FlGuides *guides, GError **error)
     return true;
 }
 
-/* What the next frame is warped from, and the output. */
+/* Keeps the output, from which the next frame is warped. */
 static bool remember(FlLazy *lazy, GError **error)
 {
     const size_t pixels = (size_t)lazy->width * (size_t)lazy->height;
@@ -473,7 +474,7 @@ static bool is_empty(const FlLazy *lazy, const FlGuides *guides)
     return true;
 }
 
-/* A video goes on while the drawing holds; a still has nothing to show. */
+/* Returns: true if the region rests. A video exemplar plays on while the drawing is held. */
 static bool holds_still(const FlLazy *lazy, const FlGuides *guides)
 {
     const FlRestRule rule = rest_rule(lazy);

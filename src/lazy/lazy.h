@@ -22,15 +22,15 @@ void fl_lazy_free(FlLazy *lazy); // NULL is fine
 
 /**
  * Paints the next frame with the exemplar's frame in step, which begins again after its last. rgb:
- * width * height * 3 sRGB, its paper without paint: as over the paper, but of a cut-out straight.
- * alpha: width * height, synthesised as the colours are; or NULL. An empty mask makes the next
- * frame a first frame. Disposable guides are cleared before paint is made. stats and view may be
- * NULL.
+ * width * height * 3 sRGB, its paper without paint: as composited over the paper, but straight
+ * colours for a cut-out. alpha: width * height, synthesised as the colours are; or NULL. An empty
+ * mask makes the next frame a first frame. Disposable guides are cleared before paint is made.
+ * stats and view may be NULL.
  */
 bool fl_lazy_frame(FlLazy *lazy, FlGuides *guides, uint8_t *rgb, uint8_t *alpha,
                    FlFrameStats *stats, FlSynthView *view, GError **error);
 
-/** How far beyond its mask a region has alpha, px. */
+/** The distance to which alpha extends beyond the region's mask, px. */
 float fl_lazy_reach(const FlExemplar *exemplar, const FlParams *params);
 
 /** As fl_synth_guide_pairs(). */

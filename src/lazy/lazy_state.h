@@ -1,4 +1,4 @@
-/* What the next frame of a region in LazyFluids needs from those before it; as bytes, too. */
+/* The state that a region in LazyFluids carries to its next frame, and its form as bytes. */
 #ifndef FLUIDY_LAZY_LAZY_STATE_H
 #define FLUIDY_LAZY_LAZY_STATE_H
 
@@ -7,12 +7,12 @@
 typedef struct FlLazyState {
     int width, height;
     int frame;  // frames painted so far, >= 0
-    bool valid; // the last of them had fluid; else the rest is not there
+    bool valid; // the last frame had fluid; else the fields below are empty
     FlFluidPast past;
     uint8_t *shape; // fl_rest_shape()
 } FlLazyState;
 
-/** Frees all that a frame without fluid, and so the first one, has none of. */
+/** Frees the fields that only exist after a frame with fluid. */
 void fl_lazy_state_forget(FlLazyState *state);
 
 /** In this machine's byte order. Returns: NULL with FL_ERROR_NO_MEMORY set. */

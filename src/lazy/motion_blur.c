@@ -17,7 +17,7 @@ typedef struct Sum {
     float rgb[3], alpha, weight, rgb_weight;
 } Sum;
 
-/* Colour counts as much as there is of it; where there is nothing, a little. */
+/* Weighs straight colours by their alpha + 1, so that transparent ones count a little. */
 static void add(const Blur *blur, float x, float y, float weight, Sum *sum)
 {
     const int u = CLAMP((int)lrintf(x), 0, blur->width - 1);

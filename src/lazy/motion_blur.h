@@ -9,8 +9,8 @@
 /**
  * Line integral along the motion with a Gaussian of a quarter of shutter * |motion| px, cut at two
  * sigma, of at most 65 samples. rgba: 4 * width * height; colours weigh by their alpha, unless they
- * are multiplied by it. motion: 2 per pixel, NAN is none. Where nothing moves the picture stays as
- * it is.
+ * are multiplied by it. motion: 2 per pixel, NAN for no motion. Pixels without motion stay
+ * unchanged.
  *
  * Returns: a picture like rgba, to be freed with free(); NULL with FL_ERROR_NO_MEMORY set.
  */

@@ -95,7 +95,7 @@ static void add_beside(const FlRetrievalRun *run, Proposal *p, int32_t target, i
         add_target(run, p, (uint32_t)(y * width + x));
 }
 
-/* What the neighbours of a source propose to and have won, continued. */
+/* Adds continuations of the targets that the neighbours of a source propose to or have won. */
 static void add_neighbours(const FlRetrievalRun *run, Proposal *p)
 {
     const int width = run->in->source.width, height = run->in->source.height;
@@ -127,7 +127,8 @@ static void choose_anywhere(const FlRetrievalRun *run, FlRng *rng, uint32_t plac
     }
 }
 
-/* Free targets by hash: the list has few that are not. Where most are taken, windows hit none. */
+/* Adds free targets chosen by hash from the list, which has few taken ones. If most targets are
+ * taken, windows rarely contain a free target. */
 static void add_anywhere(const FlRetrievalRun *run, Proposal *p, const uint32_t places[ANYWHERE])
 {
     for (int n = 0; n < ANYWHERE; n++) {

@@ -96,7 +96,7 @@ static uint32_t block_side(const FlRetrievalRun *run)
     return side;
 }
 
-/* What the sources count for, and how often that may be used. */
+/* Assigns the sources to cells (patches or blocks) and sets the quota of a cell. */
 static bool fill_cells(FlRetrievalRun *run, GError **error)
 {
     const uint32_t side = block_side(run), width = (uint32_t)run->in->source.width;

@@ -7,7 +7,7 @@
 #include "synth/fluid_texel.h"
 #include "synth/nnf.h"
 
-/** How equally the patches of the exemplar are used. */
+/** The rule for equal use of the exemplar's patches. */
 typedef enum FlUniform {
     FL_UNIFORM_AUTO,  // patches, where there are not more of them than targets; else blocks
     FL_UNIFORM_PATCH, // each one K or K + 1 times (5)
@@ -27,13 +27,13 @@ typedef struct FlRetrieval {
     FlFluidDistance distance;
 } FlRetrieval;
 
-/** What a retrieval did. Use counts patches, or blocks where these are counted. */
+/** The statistics of a retrieval. Use counts patches, or blocks with FL_UNIFORM_BLOCK. */
 typedef struct FlRetrieved {
     int passes;
     uint64_t evaluations; // of distances
     double energy;        // sum over targets of their distance in the paper's units
     int least, most;      // use
-    size_t n_most;        // how many are used least + 1 times, where that is `most`
+    size_t n_most;        // number of cells used least + 1 times, if most == least + 1
 } FlRetrieved;
 
 #define FL_RETRIEVAL_TURNS 4
@@ -65,12 +65,12 @@ typedef struct FlRetrievalRun {
     int32_t *won;      // [n_sources][n_kept]: the last targets won, newest first; FL_NO_TARGET
     uint32_t n_kept;
     uint32_t *warm;                  // targets of the warm start, source by source,
-    uint32_t *warm_first, *warm_end; // where those of a source stand; the first may be taken
+    uint32_t *warm_first, *warm_end; // ranges of each source; the first target may be taken
     uint64_t *is_free;               // by target, a bit each
     uint32_t *open;                  // free targets in scan order, and a few that are no longer
     uint32_t n_open, n_free;
     uint64_t *offer;                // by target: the least cost << 32 | a hash of the source
-    uint32_t *cell;                 // by source: what it counts for
+    uint32_t *cell;                 // by source: its patch or block
     uint32_t *use;                  // by cell
     uint32_t n_cells, quota, extra; // K, and the cells that may still be used K + 1 times
     uint32_t *tile_places, *tile_first;
@@ -97,7 +97,7 @@ static inline uint32_t fl_retrieval_pixel(const FlRetrievalRun *run, uint32_t so
     return run->in->sources[source / run->n_turns];
 }
 
-/** Whether a source may be used once more. */
+/** Returns: true if a source may be used once more. */
 static inline bool fl_retrieval_is_eligible(const FlRetrievalRun *run, uint32_t source)
 {
     const uint32_t use = run->use[run->cell[source]];

@@ -144,7 +144,7 @@ static bool make_table(FlRetrievalRun *run, uint32_t n_eligible, GError **error)
     return true;
 }
 
-/* Whether few enough pairs are left for a table. */
+/* Returns: true if few enough pairs are left for a table. */
 static bool are_few(const FlRetrievalRun *run, uint32_t n_eligible)
 {
     const uint64_t pairs = (uint64_t)n_eligible * run->n_free;

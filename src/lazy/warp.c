@@ -94,7 +94,7 @@ static void sample(const FlExemplarLevel *spline, const FlKernels *kernels, int 
                            fl_spline_phases[y & 15].y, value);
 }
 
-/* Without fluid there, the past is empty and counts where there should be none either. */
+/* Pixels without past fluid get an empty past, with weight where the mask is empty as well. */
 static void warp_pixel(const FlFluidPast *past, const FlExemplarLevel *spline,
                        const FlKernels *kernels, const float from[2], float mask, int frame,
                        float value[4], float *weight)

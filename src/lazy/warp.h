@@ -8,8 +8,8 @@
 
 #define FL_FLUID_DEPTH 65535 // 1.0 of a stored output
 
-/** The output that the next frame is warped from, RGBA as the exemplar's planes are; with its mask
- * and field. Zeroed: nothing. */
+/** The output from which the next frame is warped, RGBA like the exemplar's planes, with its mask
+ * and field. All 0: empty. */
 typedef struct FlFluidPast {
     uint16_t *rgba; // 0 … FL_FLUID_DEPTH
     uint8_t *mask;  // coverage
@@ -17,21 +17,22 @@ typedef struct FlFluidPast {
 } FlFluidPast;
 
 /**
- * The motion into the frame, px, interleaved: the drawing's own where it is known, else the flow
- * of the masks. It is continued for `reach` px beyond the mask; NAN where nothing is known, which
- * is where new fluid comes from.
+ * The motion into the frame, px, interleaved: the drawing's own where it is known, else the flow of
+ * the masks. It is continued for `reach` px beyond the mask; NAN where motion is unknown: new fluid
+ * appears at these pixels.
  */
 bool fl_fluid_motion(const FlGuides *guides, int reach, float *motion, GError **error);
 
 /**
  * Fills the planes of the past, and the weight of the past: 1, but 0 where the mask has fluid and
- * the warped mask has none (6), per pixel. Sampled by cubic splines at 1/16 px; `frame` decides
+ * the warped mask is empty (6), per pixel. Sampled by cubic splines at 1/16 px; `frame` decides
  * which way places are rounded, so that slow motions add up.
  */
 bool fl_fluid_warp(const FlFluidPast *past, const uint8_t *mask, const float *motion, int frame,
                    const FlKernels *kernels, FlFluidPlanes *planes, GError **error);
 
-/** The field carried along, to the nearest pixel; no match where nothing is known. Frames are 0. */
+/** The field carried along, to the nearest pixel; FL_NO_MATCH where the motion is unknown. Frames
+ * are 0. */
 void fl_fluid_carry(const FlNnf *past, const float *motion, FlNnf *now);
 
 #endif
