@@ -11,7 +11,7 @@
 #define SMALLEST 8 // px: the shortest side worth searching
 #define ROOM 14    // px around a cut-out: as far as paint reaches beyond its contour, and a bit
 
-/* How the frames of an exemplar get another size. */
+/* The resampling of an exemplar's frames. */
 typedef struct Sizes {
     int from_width, from_height, to_width, to_height;
     FlResampling *rows, *columns;
@@ -116,7 +116,7 @@ static bool find_sizes(const FlStyle *style, const FlStyleUse *use, FlStyle *out
     return true;
 }
 
-/* Whether frames of a cut-out end where their paint does not: a material, not a shape. */
+/* Returns: true if paint of a cut-out reaches most of the frame's rim: a material, not a shape. */
 static bool is_full(const FlStyle *style)
 {
     const size_t width = (size_t)style->width, height = (size_t)style->height;
@@ -157,7 +157,7 @@ static bool add_room(FlStyle *style, GError **error)
     return true;
 }
 
-/* What does not depend on size and number of the frames. */
+/* Copies the fields that do not depend on the size and number of the frames. */
 static FlStyle *new_like(const FlStyle *style)
 {
     FlStyle *out = g_new0(FlStyle, 1);

@@ -28,7 +28,7 @@ static void add_frame(Profile *profile, const uint8_t *rgb, const uint8_t *mask,
     }
 }
 
-/* The mean colour of depths from ... to; false if there are no such pixels. */
+/* The mean colour of the depths `from` … `to`. Returns: false without such pixels. */
 static bool mean_colour(const Profile *profile, int from, int to, double mean[3])
 {
     double sum[3] = {0}, n = 0;

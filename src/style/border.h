@@ -1,4 +1,4 @@
-/* How wide the border of the paint is: where edge darkening and fringe give way to the interior. */
+/* Estimates the width of the paint's border, the zone of edge darkening and fringe. */
 #ifndef FLUIDY_STYLE_BORDER_H
 #define FLUIDY_STYLE_BORDER_H
 

@@ -40,7 +40,7 @@ static void write_line(cairo_t *cr, double x, double y, const double rgb[3], con
     cairo_show_text(cr, text);
 }
 
-/* Where the distance crosses `level` between two pixels, a point of the line. */
+/* The position between two pixels at which the distance crosses `level`. */
 static double crossing(float a, float b, float level)
 {
     return (level - a) / (double)(b - a);
@@ -131,7 +131,7 @@ static bool draw_frame(Page *page, double x, double y, int frame, Overlay overla
     return true;
 }
 
-/* Which frame stands in a column: the first, one in the middle, the last. */
+/* The frame in a column: the first, one in the middle, the last. */
 static int column_frame(const FlStyle *style, int column)
 {
     return (style->n_frames - 1) * column / (COLUMNS - 1);
@@ -159,7 +159,7 @@ static bool draw_rows(Page *page, double *y, GError **error)
     return true;
 }
 
-/* A plot's frame and title; the curve or bars are drawn into it, from the lower left corner. */
+/* Draws a plot's frame and title and moves the origin to its lower left corner. */
 static void begin_plot(const Page *page, double x, double y, const char *title)
 {
     cairo_t *cr = page->cr;

@@ -4,7 +4,7 @@
 
 #include "style/measure.h"
 
-/** What a sheet shows; everything belongs to the caller. */
+/** The content of a sheet; all of it belongs to the caller. */
 typedef struct FlCheckSheet {
     const FlStyle *style;
     const FlMeasures *measures;

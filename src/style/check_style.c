@@ -81,7 +81,7 @@ static float median_over_frames(const FlMeasures *measures, size_t field)
 static const char *const octants[FL_OCTANTS] = {"right", "down right", "down", "down left",
                                                 "left",  "up left",    "up",   "up right"};
 
-/* Whether a list such as "left, up left" has the name. */
+/* Returns: true if a list such as "left, up left" contains the name. */
 static bool is_listed(const char *list, const char *name)
 {
     g_auto(GStrv) words = g_strsplit_set(list ? list : "", ",;", -1);
@@ -91,7 +91,7 @@ static bool is_listed(const char *list, const char *name)
     return false;
 }
 
-/* The directions that no outline faces, but for those that `known` lists (NULL: none). */
+/* The directions that no outline faces, without those in `known`, which may be NULL. */
 static char *missing_octants(const FlMeasures *measures, const char *known)
 {
     g_autoptr(GPtrArray) names = g_ptr_array_new();
@@ -139,7 +139,8 @@ static void add_measured_facts(Check *check)
     add(facts, "life       paint changes by %.1f levels from frame to frame", MEDIAN(m, change));
 }
 
-/* "4-9, 12" of the frames for which a test fails, from `first` on, counted from 1; NULL if none. */
+/* "4-9, 12" of the frames for which a test fails, from `first` on, counted from 1; NULL if all
+ * pass. */
 static char *failing_frames(const FlMeasures *measures, int first, size_t field, float least)
 {
     GString *list = g_string_new(NULL);
@@ -178,7 +179,7 @@ static void find_frame_problems(Check *check)
         const bool of_motion = tests[i].field == offsetof(FlFrameMeasure, moving) ||
                                tests[i].field == offsetof(FlFrameMeasure, steady);
         if (of_motion && MEDIAN(m, front) < 0.1f)
-            continue; // find_motion_problems() reports it, once
+            continue; // find_motion_problems() reports this once
         g_autofree char *frames = failing_frames(m, tests[i].first, tests[i].field, tests[i].least);
         if (frames)
             add(check->problems, "%s (frame %s)", tests[i].what, frames);

@@ -11,7 +11,7 @@
 
 /* The constants below are pixels and 8-bit levels, tried on seven recordings and simulations. */
 static const float SMOOTH_PX = 1.5f;    // removes grain before the threshold
-static const float MARGIN_PX = 2;       // smooths the outline after it
+static const float MARGIN_PX = 2;       // smooths the outline after the threshold
 static const float MARGIN_CUT = 0.4f;   // below one half: the mask reaches half a pixel further
 static const float FAINTEST = 5;        // a smaller difference from the paper is never paint
 static const float NOISES = 4;          // nor is less than so many times the paper's noise
@@ -88,8 +88,8 @@ static int otsu_threshold(const uint32_t count[256])
 }
 
 /*
- * Where paint begins, in levels of difference, from a frame that holds both paint and paper: above
- * the paper's noise, since thin paint is paint too, and below the middle between the two.
+ * The least difference of paint from paper, in levels, from a frame with both paint and paper: just
+ * above the paper's noise, to include thin paint, and below the threshold between the two.
  */
 static float choose_threshold(const float *most, size_t pixels)
 {

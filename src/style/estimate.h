@@ -30,8 +30,8 @@ bool fl_extract_masks(const FlClip *clip, const uint8_t paper[3], uint8_t *mask,
 double fl_mask_share(const uint8_t *mask, int width, int height);
 
 /**
- * fl_blur() as recordings are imported with it: rounded otherwise, and cut a pixel farther out if
- * three sigma are no whole number of pixels. sigma_px > 0.
+ * fl_blur() in the variant for importing recordings: it is rounded differently, and its radius of
+ * three sigma is rounded up to a pixel. sigma_px > 0.
  */
 bool fl_blur_recording(float *plane, int width, int height, float sigma_px, GError **error);
 

@@ -15,8 +15,8 @@ static void add_folder(GPtrArray *folders, char *folder)
         g_ptr_array_add(folders, folder);
 }
 
-/* ../share of the folder that the program is in: a package that was moved has its styles there, and
- * so has the build folder. */
+/* Adds ../share of the program's folder, where a relocated package and the build folder have their
+ * styles. */
 static void add_beside_program(GPtrArray *folders)
 {
     g_autofree char *program = g_file_read_link("/proc/self/exe", NULL);
@@ -113,7 +113,7 @@ GPtrArray *fl_style_list(void)
     return entries;
 }
 
-/* Whether a word that was typed means a style: by its title or its folder's name, in any case. */
+/* Returns: true if a typed word is a style's title or its folder's name, in any case. */
 static bool is_meant(const FlStyleEntry *entry, const char *word)
 {
     return !entry->hidden && ((entry->title && fl_edit_distance(word, entry->title) == 0) ||
@@ -134,7 +134,7 @@ static const char *near_name(const FlStyleEntry *entry, const char *word)
     return fl_resembles(word, entry->name) ? entry->name : NULL;
 }
 
-/* "; did you mean “Dry brush”?", or all there is if nothing is near. */
+/* "; did you mean “Dry brush”?", or the list of all names if no name is similar. */
 static char *other_names(const GPtrArray *entries, const char *word)
 {
     const int most = 3;

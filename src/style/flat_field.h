@@ -10,7 +10,7 @@ typedef struct FlFlatField {
     uint8_t paper[3];  // the paper where the gain is 1
     double gain[3][6]; // of 1, u, v, u², uv, v²; u and v run from -1 to 1 over the frame
     double low[3],
-        high[3]; // the range of gains at bare places; gains under paint are clamped to it
+        high[3]; // the range of gains at bare places, which also limits gains under paint
 } FlFlatField;
 
 /**

@@ -68,7 +68,7 @@ static void set_facts(Import *import, const FlRecording *source)
     const double rate = options->fps > 0 ? options->fps
                         : source->series ? 0
                                          : fl_ffmpeg_rate(source->path) / options->step;
-    style->path = g_strdup(options->source); // errors name it
+    style->path = g_strdup(options->source); // named in error messages
     style->name = options->name ? g_strdup(options->name) : g_path_get_basename(absolute);
     style->author = g_strdup(options->author);
     style->licence = g_strdup(options->licence);
@@ -150,7 +150,7 @@ static bool read_all(Import *import, GError **error)
     return !masks || store_masks(import, masks, source, error);
 }
 
-/* The paper colour and, unless they are given, the masks. */
+/* Finds the paper colour and the masks, if they are not given. */
 static bool find_paint(Import *import, GError **error)
 {
     FlStyle *style = import->style;
@@ -245,7 +245,7 @@ static bool correct_frames(Import *import, GError **error)
     if (import->masks_given && !fl_style_check_paint(import->style, error))
         return false; // before it takes bare paper under the masks for paint in a shadow
     if (options->whole || (!options->paper && !is_like_paper(import->style->paper)))
-        return true; // nothing to go by
+        return true; // bare paper is unknown
     if (options->stabilise && import->style->n_frames > 1 &&
         (!stabilise_frames(import, error) || !find_paint(import, error)))
         return false;

@@ -42,7 +42,7 @@ static const struct Key {
     {"granulation", NUMBER, offsetof(FlStyle, front.granulation), 0, 1, 0, FRONT},
 };
 
-/* Where the reader is. */
+/* The reader's state. */
 typedef struct Reader {
     FlStyle *style;
     Section place;

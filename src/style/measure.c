@@ -9,7 +9,7 @@
 
 enum { BLOCK = 16, SPEEDS = 1024 };
 
-static const float SPEED_STEP = 0.02f; // px per frame: of the histogram that medians are read from
+static const float SPEED_STEP = 0.02f; // px per frame: bin of the histogram for medians
 
 void fl_measures_free(FlMeasures *measures)
 {
@@ -91,7 +91,7 @@ static float median_of(const uint32_t *count, int bins, float step)
     return 0;
 }
 
-/* The median lightness of what lies outside a mask; -1 if nothing does. */
+/* The median lightness of the pixels outside a mask; -1 without such pixels. */
 static float bare_lightness(const uint8_t *rgb, const uint8_t *mask, size_t pixels)
 {
     uint32_t count[256] = {0}, n = 0;

@@ -18,9 +18,9 @@ typedef struct FlFrameMeasure {
     float moving;   // of the paint: FL_MOVING_PX or faster
     float front;    // median speed of the outline, px per frame
     float steady;   // of the outline: from FL_MOVING_PX to FL_TOO_FAST_PX
-    float paper;    // median lightness of the bare paper, levels; -1: nothing is bare
-    float change;   // mean change of painted pixels' lightness to the next frame, levels; last: as
-                    // before
+    float paper;    // median lightness of the bare paper, levels; -1: no bare paper
+    float change;   // mean change of painted pixels' lightness to the next frame, levels; the last
+                    // frame repeats the value before
 } FlFrameMeasure;
 
 enum { FL_SPEED_BINS = 24, FL_OCTANTS = 8 };
@@ -34,11 +34,11 @@ typedef struct FlMeasures {
     float rim[4];                // share of the left, top, right, bottom rim in the mask, at most
     float texture;               // fine detail of the interior, levels (RMS above 2 px blur)
     float thin_texture;          // the same where paint is a tenth to half as dense; -1: nowhere
-    float paper_texture;         // the same of bare paper; -1: nothing is bare
-    float alike;                 // RMS difference of the two most similar 16x16 blocks; -1: none
-    int n_blocks;                // 16x16 blocks of paint in the last frame
-    float paper_range;           // how unevenly the bare paper is lit, levels
-    float edge;                  // density at the outline as a share of the interior's
+    float paper_texture;         // the same of bare paper; -1: no bare paper
+    float alike;       // RMS difference of the two most similar 16x16 blocks; -1: fewer than two
+    int n_blocks;      // 16x16 blocks of paint in the last frame
+    float paper_range; // range of the light on the bare paper, levels
+    float edge;        // density at the outline as a share of the interior's
 } FlMeasures;
 
 /** Measures a style. NULL with FL_ERROR_NO_MEMORY or an error of the guides set. */

@@ -11,7 +11,7 @@ bool fl_style_allocate(FlStyle *style, const FlPicture *first, int n_frames, GEr
 /** Stores a frame: its colours in rgb, its alpha in mask. */
 void fl_style_store_frame(FlStyle *style, int frame, const FlPicture *picture);
 
-/** Whether any pixel of mask, which holds the alpha at this point, is not opaque. */
+/** Returns: true if any pixel of mask, which holds the alpha at this stage, is not opaque. */
 bool fl_style_has_alpha(const FlStyle *style);
 
 /** Composites the colours, whose straight alpha is in mask, over the paper. */
@@ -20,9 +20,7 @@ void fl_style_composite(FlStyle *style);
 /** Stores a mask: its lightness times its alpha. */
 void fl_style_store_mask(FlStyle *style, int frame, const FlPicture *picture);
 
-/**
- * False with FL_ERROR_STYLE set if every mask is empty, or covers nothing but bare paper.
- */
+/** Returns: false with FL_ERROR_STYLE set if every mask is empty or covers only bare paper. */
 bool fl_style_check_paint(const FlStyle *style, GError **error);
 
 #endif

@@ -179,7 +179,7 @@ static bool within_limit(const Reader *reader, int n_frames, GError **error)
     return fl_limit_check(FL_LIMIT_STYLE, pixels / 1e6, where, error);
 }
 
-/* Crops and scales one frame and keeps it; `whole` is left to the caller. */
+/* Crops, scales and keeps one frame; `whole` is left to the caller. */
 static bool add_picture(Reader *reader, const FlPicture *whole, const char *path, GError **error)
 {
     const int *crop = reader->import->crop;

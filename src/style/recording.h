@@ -7,7 +7,7 @@
 #include <fluidy/style.h>
 
 typedef struct FlRecording {
-    char *path;        // as the user named it
+    char *path;        // as given by the user
     FlSeries *series;  // numbered pictures, or one still; NULL: a video
     int number;        // of the first frame that was read
     int width, height; // of the frames that were read, before crop and scale
@@ -15,10 +15,10 @@ typedef struct FlRecording {
 
 /**
  * Finds out what `path` is; reads no picture yet. In a folder, *masks is a second series called
- * mask..., or the folder `masks` beside `frames`, to be freed too; else NULL. With masks == NULL,
+ * mask..., or the folder `masks` beside `frames`, also to be freed; else NULL. With masks == NULL,
  * the result is the series of masks of such a folder.
  *
- * Returns: NULL with FL_ERROR_INPUT set if there is nothing to read, or more than one series.
+ * Returns: NULL with FL_ERROR_INPUT set if there is no picture, or more than one series.
  */
 FlRecording *fl_recording_open(const char *path, FlRecording **masks, GError **error);
 

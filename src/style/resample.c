@@ -27,7 +27,8 @@ static float cubic(float t)
     return t < 2 ? ((-.5f * t + 2.5f) * t - 4) * t + 2 : 0;
 }
 
-/* The samples that one is made of: their sum by weights, by the sum of these. */
+/* The source samples of one sample, which is their weighted sum divided by the sum of the weights.
+ */
 typedef struct Taps {
     int first, n;
     float sum;

@@ -18,10 +18,10 @@ typedef struct FlResampling FlResampling;
 FlResampling *fl_resampling_new(int from_n, int to_n);
 void fl_resampling_free(FlResampling *resampling); // NULL is fine
 
-/** A row of interleaved samples. from: from_n * channels; to: to_n * channels. */
+/** Resamples a row of interleaved samples. from: from_n * channels; to: to_n * channels. */
 void fl_resample_row(const FlResampling *resampling, const float *from, int channels, float *to);
 
-/** Row k of to_n, of columns that are resampled. from: from_n rows of `row` floats; to: one. */
+/** Resamples along columns and gives row k of to_n. from: from_n rows of `row` floats; to: one. */
 void fl_resample_columns(const FlResampling *resampling, const float *from, size_t row, int k,
                          float *to);
 

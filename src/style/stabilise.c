@@ -170,7 +170,7 @@ static bool has_texture(const Pair *pair)
     return pair->n >= LEAST_PIXELS && sum >= LEAST_TEXTURE * (double)pair->n;
 }
 
-/* The shift of the current frame, near that of the frame before; none if there is doubt. */
+/* The shift of the current frame, near that of the frame before; zero if uncertain. */
 static FlShift find_shift(const Pair *pair, size_t n_white, FlShift before)
 {
     const FlShift none = {0, 0};

@@ -4,7 +4,8 @@
 
 #include "style/estimate.h"
 
-/** How far a frame's content lies from where it lies in the first frame, px, right and down. */
+/** The displacement of a frame's content from its position in the first frame, px, right and down.
+ */
 typedef struct FlShift {
     float x, y;
 } FlShift;

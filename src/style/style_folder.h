@@ -7,17 +7,16 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/** How the paint of a style wets paper ahead of it and what it leaves behind; see fluidy-style(5).
- */
+/** The behaviour of a style's paint at wet fronts and on the paper behind; see fluidy-style(5). */
 typedef struct FlFrontStyle {
-    float width;       // of its fronts, 0..1; 0: dry paint has none
-    float stain;       // what paper keeps of its paint, 0..1
+    float width;       // of its fronts, 0..1; 0 for dry paint
+    float stain;       // share of the paint that stays in the paper, 0..1
     float film;        // of water that stays wet for some frames, 0..1
     float soft;        // edge of a front, a share of its width
-    float base;        // how dense the front is at its tip, 0..1
-    float line;        // of pigment that gathers there, 0..1
-    float fingers;     // how unevenly it runs, 0..1
-    float granulation; // how far pigment settles in hollows, 0..1
+    float base;        // density of the front at its tip, 0..1
+    float line;        // strength of the pigment line at the tip, 0..1
+    float fingers;     // unevenness of the front, 0..1
+    float granulation; // settling of pigment in hollows, 0..1
 } FlFrontStyle;
 
 #define FL_FRONT_DEFAULTS                                                                          \
@@ -30,7 +29,7 @@ typedef struct FlFrontStyle {
 typedef struct FlStyle {
     char *name;      // the folder's name, or style.ini's
     char *path;      // the folder
-    char *character; // what it looks like and is for, a line; may be NULL
+    char *character; // its looks and purpose, a line; may be NULL
     char *author, *licence;
     int width, height, n_frames;
     float fps;         // frames per second, > 0
@@ -40,18 +39,18 @@ typedef struct FlStyle {
     FlMedium medium;   // FL_MEDIUM_AUTO: not given
     float granulation; // of its paint on paper: see fl_granulate()
     FlFrontStyle front;
-    float smoothness;           // of its recording: see fl_style_smoothness()
-    uint8_t *rgb;               // n_frames * height * width * 3, sRGB
-    uint8_t *mask;              // n_frames * height * width, coverage 0..255
-    bool cut_out;               // mask is the frames' own alpha, over the paper: see through it
-    float *flow;                // n_frames * height * width * 2, px per frame; NULL: construct it
-    char *made_by;              // what made the frames, such as a recipe's file name; may be NULL
+    float smoothness; // of its recording: see fl_style_smoothness()
+    uint8_t *rgb;     // n_frames * height * width * 3, sRGB
+    uint8_t *mask;    // n_frames * height * width, coverage 0..255
+    bool cut_out;     // mask is the frames' own alpha, over the paper
+    float *flow;      // n_frames * height * width * 2, px per frame; NULL: to be constructed
+    char *made_by;    // source of the frames, such as a recipe's file name; may be NULL
     char *missing_orientations; // directions that no outline faces, by style.ini; "none" or NULL
     unsigned guessed;           // FlGuess bits (manifest.h): values that are estimated
 } FlStyle;
 
 #define FL_STYLE_TILE "transport.png" // a file of styles that move ink: transport/tile.h
-#define FL_GRANULATION 0.08f          // where none is given: wet, barely visible as such
+#define FL_GRANULATION 0.08f          // default for styles: barely visible
 
 /**
  * Reads a folder. Estimates what it lacks from its frames: the paper's colour, the masks, the
@@ -71,11 +70,11 @@ FlStyle *fl_style_load(const char *folder, GError **error);
  */
 char *fl_style_find(const char *name, GError **error);
 
-/** True if a folder has a `frames` folder in it, which is all that makes it a style. */
+/** Returns: true if a folder contains a `frames` folder, which makes it a style. */
 bool fl_is_style(const char *folder);
 
 /**
- * How smooth the paint is: 0 where grain would hide a seam, as in dry media, up to 1 where paint
+ * The smoothness of the paint: from 0 if grain would hide a seam, as in dry media, to 1 if paint
  * only runs from light to dark, as in a wash. Compares pixels close together that lie a border
  * inside the masks; distances are px of the size in which the style is shown, so that a recording
  * twice as large is as smooth. 0 without such pixels.

@@ -102,8 +102,7 @@ static bool remove_parts(const char *folder, GError **error)
     return true;
 }
 
-/* ".NAME.part" beside a folder: the same in each run, which removes what a killed run left there.
- */
+/* ".NAME.part" beside a folder: the same in each run, which removes the rest of a killed run. */
 static char *hidden_name(const char *folder)
 {
     g_autofree char *parent = g_path_get_dirname(folder), *base = g_path_get_basename(folder);

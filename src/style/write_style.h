@@ -9,7 +9,7 @@
  *
  * Everything is written to ".NAME.part" beside `folder` and moved there when it is complete; other
  * files in the folder stay. Returns: false with FL_ERROR_EXISTS if the folder has one of these and
- * `overwrite` is false, or if another run is writing it, else with FL_ERROR_OUTPUT.
+ * `overwrite` is false, or if another run is writing the style, else with FL_ERROR_OUTPUT.
  */
 bool fl_style_write(const FlStyle *style, const char *folder, bool overwrite, GError **error);
 
