@@ -141,8 +141,8 @@ static bool out_of_reach(const FlSheet *sheet, const Moment *now, int i, int j)
            !(j < sheet->height - 1 && wet[sheet->width]);
 }
 
-/* How much of a full load a cell takes from a brush that is nearly dry: bumps take it first, and
-   what lies under the bristles. Behind its rim the brush has been more than once. */
+/* The share of a full load that a cell takes from a nearly dry brush: bumps and cells under the
+ * bristles take paint first. Cells behind the rim are brushed more than once. */
 static float touched(const FlSheet *sheet, const Moment *now, size_t at, float depth_px)
 {
     const FlEvent *event = now->event;
@@ -204,9 +204,10 @@ static void lay_down(FlSheet *sheet, const Moment *now)
 }
 
 /* Velocity over a face between two cells: down the slope of the stroke's first outline, fastest
-   near the rim of the puddle, 0 beyond it, modulated by the paper. The slope of the puddle itself
-   would gather pigment wherever the paper slows it down. The velocity starts at 0 on the line that
-   the brush follows, where the slope turns; otherwise a streak without pigment would open there. */
+ * near the rim of the puddle, 0 outside, modulated by the paper. The slope of the puddle itself
+ * would gather pigment wherever the paper slows it down. The velocity starts at 0 on the line
+ * that the brush follows, where the slope turns; otherwise a streak without pigment would open
+ * there. */
 static inline float sweep_speed(const Moment *now, FlTouch a, FlTouch b, float depth_px, float open)
 {
     const FlEvent *event = now->event;

@@ -9,7 +9,7 @@ typedef struct FlTouch {
     float inside;                // depth of its centre inside the stroke's first outline, px
     float away;                  // distance from the line that the brush follows, px
     float load;                  // factor on the pigment, 1 on the average
-    float bristle;               // how thickly the bristles stand there, 0 on the average
+    float bristle;               // density of the bristles, 0 on the average
     float play[FL_MAX_PIGMENTS]; // factors on single pigments, 1 on the average
 } FlTouch;
 

@@ -21,7 +21,7 @@ static void soak(FlSheet *sheet, float alpha)
 }
 
 /* The mobility of a cell's water, 0..1/4: its saturation to a power. Four neighbours that take a
-   quarter each cannot empty it. */
+ * quarter each cannot empty the cell. */
 static void find_mobility(const FlSheet *sheet, const FlFlow *flow, float *mobility)
 {
     const size_t cells = (size_t)sheet->width * sheet->height;

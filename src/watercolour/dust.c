@@ -23,8 +23,8 @@ typedef struct Grain {
     float x, y;  // cells
     float lag;   // share of the front's way by which it lags, 0..1
     float start; // its depth inside the outline at the start, px
-    float ease;  // how easily its neighbourhood crumbles, 1 on average
-    float grip;  // the depth of crumbling that loosens it, in rims of the recipe
+    float ease;  // crumbling of its neighbourhood, 1 on average
+    float grip;  // the depth of crumbling that loosens the grain, in rims of the recipe
 } Grain;
 
 struct FlDustCloud {
@@ -77,7 +77,7 @@ static Grain place_grain(const FlRecipe *recipe, const FlSheet *sheet, uint64_t 
         grain.start = depth_at(recipe, grain.x, grain.y, &load);
         if (grain.start < -1.5f)
             continue;
-        const float rim = fmaxf(0, 1 - grain.start / 8); // where only the bumps touch the stick
+        const float rim = fmaxf(0, 1 - grain.start / 8); // in the rim only bumps touch the stick
         const float tooth = (relief_at(sheet, grain.x, grain.y) - 0.3f - 0.3f * rim) * 2.2f;
         const float pressed = load * fmaxf(0.25f * (1 - rim), tooth);
         if (fl_rng_float(&rng) * 2 < pressed)
@@ -132,7 +132,7 @@ static void wind(const FlRecipe *recipe, float x, float y, float out[2])
 }
 
 /* Drifts a grain for a frame. The front starts at the outline and moves at the recipe's speed; a
-   grain moves while it is behind its own share of that. */
+ * grain moves while it is behind its own share of the front's way. */
 static void drift_grain(const FlRecipe *recipe, const FlSheet *sheet, Grain *grain, int index,
                         int frame)
 {
@@ -154,7 +154,7 @@ static void drift_grain(const FlRecipe *recipe, const FlSheet *sheet, Grain *gra
     const float x = grain->x + way * (blow[0] + dust->scatter * (fl_rng_float(&rng) - 0.5f));
     const float y = grain->y + way * (blow[1] + dust->scatter * (fl_rng_float(&rng) - 0.5f));
     if (fl_rng_float(&rng) > fmaxf(0.1f, 3 * (relief_at(sheet, x, y) - 0.3f)))
-        return; // the tooth does not catch it there
+        return; // the tooth does not catch the grain
     grain->x = x, grain->y = y;
 }
 
@@ -179,8 +179,9 @@ static void lay_piece(FlSheet *sheet, float *d, float at_x, float at_y, float we
     cell[sheet->width + 1] += weight * fx * fy;
 }
 
-/* A grain is as large as a cell of the sheet on which it drifted. On a finer one it is as many
-   pieces as it has cells there, which lie by chance within it, some on others. */
+/* A grain is as large as a cell of the sheet on which it drifted. On a finer sheet it is split into
+ * one piece for each fine cell of its area, at random places within the grain, which may overlap.
+ */
 static void lay_grain(FlSheet *sheet, float *d, const Grain *grain, int ratio, float weight,
                       FlRng *rng)
 {

@@ -20,8 +20,8 @@ struct FlFineSheet {
     int ratio;
     FlSheet *fine;
     float *grain;           // of each fine cell: deviation 1 over the sheet
-    float *bend_x, *bend_y; // where a fine cell lies, off its place, cells
-    float *rough;           // of each cell: deviation of the grain within it, share of its pigment
+    float *bend_x, *bend_y; // displacement of a fine cell, cells
+    float *rough;           // of each cell: deviation of the grain inside, share of its pigment
     float *rows, *square, *total, *sharp; // of each cell
 };
 
@@ -92,7 +92,8 @@ static void square_mean(float *plane, int width, int height, int radius, float *
         }
 }
 
-/* How rough a plane is from cell to cell, against its mean around: into `rough`. */
+/* Stores the roughness of a plane, its deviation from cell to cell relative to the local mean, in
+ * `rough`. */
 static void find_roughness(FlFineSheet *fine, const float *plane, int width, int height)
 {
     const size_t cells = (size_t)width * (size_t)height;
@@ -109,7 +110,8 @@ static void find_roughness(FlFineSheet *fine, const float *plane, int width, int
 
 /* ---- the fine planes ------------------------------------------------------------------------- */
 
-/* What a fine cell is of its own, in coordinates of the cells, so that every ratio has the same. */
+/* Makes the noise of the fine cells in coordinates of the cells, so that all ratios have the same.
+ */
 static void fill_noise(FlFineSheet *fine, uint64_t seed)
 {
     const FlSheet *sheet = fine->fine;

@@ -5,11 +5,11 @@
 #include "watercolour/sheet.h"
 
 /**
- * A style at twice or four times its size is the same paint, scanned more finely. Its water is that
- * of the recipe's own grid, whatever the size, so that time, diffusion and capillarity are those of
- * the page and not of the pixels; a simulation on n times finer cells would take n^4 times as long
- * and, since the numerical diffusion of advection shrinks with the cells, would be another picture.
- * What happens within a cell is added here, as large-eddy simulations do it.
+ * A style at twice or four times its size is the same paint, scanned more finely. Its water is
+ * simulated on the recipe's own grid, whatever the size, so that time, diffusion and capillarity
+ * belong to the page and not to the pixels; a simulation on n times finer cells would take n^4
+ * times as long and, since the numerical diffusion of advection shrinks with the cells, would be
+ * another picture. The detail within a cell is added here, as in large-eddy simulations.
  */
 typedef struct FlFineSheet FlFineSheet;
 
@@ -24,8 +24,8 @@ FlFineSheet *fl_fine_sheet_new(const FlSheet *sheet, int ratio, uint64_t seed, G
 void fl_fine_sheet_free(FlFineSheet *fine); // NULL is fine
 
 /**
- * Finds the pigment within the cells. Seen from afar, it is that of the sheet; texture that reaches
- * down to a cell goes on below it, weaker in each octave; smooth paint stays smooth.
+ * Finds the pigment within the cells. Seen from afar, it is that of the sheet; texture as fine as a
+ * cell continues at smaller scales, weaker in each octave; smooth paint stays smooth.
  */
 void fl_fine_sheet_follow(FlFineSheet *fine, const FlSheet *sheet);
 

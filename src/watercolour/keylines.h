@@ -1,4 +1,4 @@
-/* A key file whose every line is remembered, so that a message can name it. */
+/* A key file that keeps the number of each line, so that messages can name the line. */
 #ifndef FLUIDY_WATERCOLOUR_KEYLINES_H
 #define FLUIDY_WATERCOLOUR_KEYLINES_H
 
@@ -7,8 +7,8 @@
 #include <stdint.h>
 
 /**
- * The file and where its reader is. A getter leaves the value alone when the key is absent, and
- * does nothing once a getter has failed: ask for everything, then look at the error once.
+ * The file and the position of its reader. A getter keeps the value when the key is absent, and has
+ * no effect after a getter has failed: call all getters, then check the error once.
  */
 typedef struct FlKeyLines FlKeyLines;
 

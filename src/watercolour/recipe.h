@@ -16,19 +16,19 @@ typedef struct FlPigment {
     const char *name;
     float absorption[3], scattering[3];   // K and S, > 0, per sRGB channel
     float density, staining, granulation; // rho, omega > 0, gamma 0..1
-    float diffusion; // how fast it spreads in standing water, cells^2 per step, 0..0.2
+    float diffusion; // rate of spreading in standing water, cells^2 per step, 0..0.2
 } FlPigment;
 
 /** The sheet. Lengths in px of the finished frames. */
 typedef struct FlPaper {
     uint8_t colour[3];
     float grain_px;    // size of the bumps of the surface
-    float roughness;   // how deep the finest bumps are against the coarse ones, 0..1
+    float roughness;   // depth of the finest bumps relative to the coarse ones, 0..1
     float stretch;     // length of the bumps along x over that along y
     float fibres;      // fibres per 100 square px
     float fibre_px;    // their length
-    float fibre_curl;  // how much they bend, 0: straight, 1: like ferns
-    float fibre_pull;  // how much better water runs along a fibre, 0..0.95
+    float fibre_curl;  // their bending, 0: straight, 1: like ferns
+    float fibre_pull;  // preference of water to run along a fibre, 0..0.95
     float capacity[2]; // cmin, cmax: water that a cell holds at h = 0 and at h = 1
     float patchiness;  // large-scale unevenness of the permeability, 0..0.95
     float patch_px;    // size of its largest patches
@@ -63,7 +63,7 @@ typedef struct FlEvent {
 
 /** Constants of the layers [C97 §4]; rates are per step. See the files of the stages. */
 typedef struct FlFlow {
-    bool shallow; // whether the shallow-water layer moves
+    bool shallow; // true if the shallow-water layer moves
     float viscosity, drag, slope, relaxation, tolerance;
     int sweeps;
     float edge_darkening;                // eta
@@ -108,7 +108,7 @@ typedef struct FlRecipe {
     FlEvent events[FL_MAX_EVENTS];
 } FlRecipe;
 
-/** The pigments of [C97 fig. 5] by name. Returns: static storage; NULL if there is none. */
+/** The pigments of [C97 fig. 5] by name. Returns: static storage; NULL for an unknown name. */
 const FlPigment *fl_pigment_find(const char *name);
 
 /** Reads a recipe. Returns: NULL with FL_ERROR_INPUT, "FILE:LINE: what was wrong". */

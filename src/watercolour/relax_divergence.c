@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-/* The correction of each cell's divergence; the paper prints + xi, which amplifies it. The largest
-   is found row by row: a maximum does not depend on the order. */
+/* The correction of each cell's divergence; the paper prints + xi, which amplifies the divergence.
+ * The largest is found row by row: a maximum does not depend on the order. */
 static float find_deltas(const FlSheet *sheet, float xi, float *delta)
 {
     const int width = sheet->width;

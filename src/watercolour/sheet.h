@@ -4,7 +4,7 @@
 
 #include "watercolour/recipe.h"
 
-/** Water below this counts as none. */
+/** Cells with less water are dry. */
 #define FL_DRY 1e-4f
 
 /**
@@ -31,7 +31,7 @@ typedef struct FlSheet {
     float *concentration; // of the current pigment in the water; a row of 0 before and after
 } FlSheet;
 
-/** A dry sheet with nothing on it. Returns: NULL with FL_ERROR_NO_MEMORY set. */
+/** A dry sheet without paint. Returns: NULL with FL_ERROR_NO_MEMORY set. */
 FlSheet *fl_sheet_new(int width, int height, int n_pigments, GError **error);
 
 void fl_sheet_free(FlSheet *sheet); // NULL is fine

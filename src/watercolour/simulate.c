@@ -135,7 +135,7 @@ static bool studio_init(Studio *studio, const FlRecipe *recipe, int size, GError
            (studio->fine = fl_fine_sheet_new(studio->sheet, ratio, recipe->seed, error));
 }
 
-/* What is scanned of a frame: frames follow one another. */
+/* Paints a frame and gives the sheet to scan. Frames must be painted in order. */
 static FlSheet *paint_frame(Studio *studio, int frame)
 {
     FlSheet *fine = studio->fine ? fl_fine_sheet(studio->fine) : NULL;

@@ -17,7 +17,7 @@ double fl_recipe_seconds(const FlRecipe *recipe, int size);
  * messages. progress may be NULL.
  *
  * Returns: to be freed with fl_style_free(); NULL with FL_ERROR_LIMIT, FL_ERROR_NO_MEMORY or, if
- * progress said so, FL_ERROR_INTERRUPTED set.
+ * progress asked to stop, FL_ERROR_INTERRUPTED set.
  */
 FlStyle *fl_recipe_paint(const FlRecipe *recipe, const char *path, int size,
                          FlWatercolourProgress progress, void *data, GError **error);

@@ -27,7 +27,7 @@ void fl_move_pigment(FlSheet *sheet);
 /** Fills the concentration with share * g / s, and 0 where it is dry. */
 void fl_find_concentration(FlSheet *sheet, const float *g, float share);
 
-/** Moves the water in the paper by flux_u and flux_v, and a share (0..1) of its pigment with it. */
+/** Moves the water in the paper by flux_u and flux_v, and a share (0..1) of its pigment along. */
 void fl_advect(FlSheet *sheet, float share);
 
 /** Spreads floating pigment through the water in the paper. Conserves it to rounding. */
@@ -36,7 +36,7 @@ void fl_diffuse_pigment(FlSheet *sheet, const FlPigment *pigments, const FlFlow 
 /** Adsorbs and desorbs pigment where the paper is wet [C97 §4.5]. */
 void fl_transfer_pigment(FlSheet *sheet, const FlPigment *pigments, const FlFlow *flow);
 
-/** Soaks water into the paper and moves it there, with the pigment in it [C97 §4.6]. */
+/** Soaks water into the paper and moves it with its pigment through the paper [C97 §4.6]. */
 void fl_capillary_flow(FlSheet *sheet, const FlFlow *flow);
 
 /** Evaporates water, most at the rim [MX05]; the pigment of a cell that dries settles. */

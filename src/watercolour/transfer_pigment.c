@@ -1,7 +1,7 @@
 /* Settling, granulation and staining [C97 §4.5]. */
 #include "watercolour/stages.h"
 
-/* No branches, so that it vectorises; a dry cell moves nothing. */
+/* Has no branches, so that it vectorises; a dry cell moves no pigment. */
 static void transfer(FlSheet *sheet, float *restrict g, float *restrict d, const FlPigment *pigment,
                      float rate)
 {
