@@ -61,8 +61,9 @@ static int open_nameless(const char *path)
 }
 
 /**
- * A new locked file of the hidden name, or -1; an error is set if another process writes it.
- * Replaces a leftover instead of reusing it: a child of the killed process may still write there.
+ * Opens a new locked file of the hidden name. Returns: -1 on failure; an error is set if another
+ * process holds the lock. Replaces a leftover instead of reusing it: a child of the killed process
+ * may still write there.
  */
 static int open_hidden(FlAtomicFile *file, GError **error)
 {
@@ -142,7 +143,7 @@ static bool rename_new(const char *from, const char *to)
     return rename(from, to) == 0;
 }
 
-/** Removes a leftover hidden file; an error is set if another process writes it. */
+/** Removes a leftover hidden file; an error is set if another process is writing to that file. */
 static bool remove_left(const char *name, const char *path, GError **error)
 {
     const int fd = fl_lock_take(name, path, error);

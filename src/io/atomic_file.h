@@ -9,9 +9,10 @@
 /**
  * A file that is being written. Its name appears with fl_atomic_commit() only.
  *
- * It has no name at all where the file system can do that; else, and while it replaces another
- * file, it is ".NAME.part" beside it, which fl_atomic_clear() removes. The file is locked: the next
- * writer of NAME removes the leftover of a killed process, but never one that is being written.
+ * It has no name if the file system allows that. Otherwise, and while it replaces another file, its
+ * name is ".NAME.part" in the same folder; fl_atomic_clear() removes that. The file is locked: the
+ * next writer of NAME removes the leftover of a killed process, but never one that is being
+ * written.
  */
 typedef struct FlAtomicFile {
     FILE *stream;    // write here; of a reserved file it only holds the lock
@@ -24,7 +25,7 @@ typedef struct FlAtomicFile {
  * Begins a file, making its folder if need be.
  *
  * Returns: false with FL_ERROR_EXISTS if the file exists and overwrite is false or another process
- * is writing it, or FL_ERROR_OUTPUT; then nothing needs to be cleared.
+ * is writing the file, or FL_ERROR_OUTPUT; the file then needs no clearing.
  */
 bool fl_atomic_open(FlAtomicFile *file, const char *path, bool overwrite, GError **error);
 
@@ -35,7 +36,8 @@ bool fl_atomic_reserve(FlAtomicFile *file, const char *path, bool overwrite, GEr
  * Syncs the file and gives it its name. The file needs clearing in any case.
  *
  * Returns: false with FL_ERROR_OUTPUT (a full disk, for instance), or FL_ERROR_EXISTS if a file of
- * that name has appeared meanwhile or another process is writing it; that file is then unchanged.
+ * that name has appeared meanwhile or another process is writing to it; that file is then
+ * unchanged.
  */
 bool fl_atomic_commit(FlAtomicFile *file, GError **error);
 

@@ -25,7 +25,7 @@ struct FlChild {
     GPid pid;   // 0: it has ended, with `status`
     int status; // the format of waitpid()
     int ours;   // our end of the stream, -1: closed
-    int errors; // a nameless file with its standard error: a pipe that is not read could block it
+    int errors; // a nameless file for its standard error: an unread pipe could block the child
 };
 
 /* In the child, before the program. */

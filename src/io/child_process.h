@@ -1,4 +1,4 @@
-/* Child processes that we write to or read from, started without a shell. */
+/* Child processes with a pipe to or from us, started without a shell. */
 #ifndef FLUIDY_IO_CHILD_PROCESS_H
 #define FLUIDY_IO_CHILD_PROCESS_H
 
@@ -8,13 +8,13 @@
 
 typedef struct FlChild FlChild;
 
-/** Which of its standard streams is ours; the other one is /dev/null. */
+/** The child's standard stream that we hold; the other one is /dev/null. */
 typedef enum FlChildStream {
     FL_CHILD_INPUT,  // we write; failures are FL_ERROR_OUTPUT
     FL_CHILD_OUTPUT, // we read; failures are FL_ERROR_INPUT
 } FlChildStream;
 
-/** How long to wait for a child. All 0: as long as it works. */
+/** The limits on waiting for a child. All 0: as long as it works. */
 typedef struct FlPatience {
     double limit_s;              // without input, output or computation; 0: the limit seconds
     bool (*stopped)(void *data); // asked every tenth of a second, from any thread; or NULL
@@ -34,9 +34,9 @@ FlChild *fl_child_start(const char *const *arguments, FlChildStream stream, int 
                         const FlPatience *patience, GError **error);
 
 /*
- * Each of these returns false with FL_ERROR_INTERRUPTED if patience.stopped() says so, or with the
- * stream's error if the child dies, or hangs and is killed; the message quotes the last line of its
- * standard error.
+ * Each of these returns false with FL_ERROR_INTERRUPTED if patience.stopped() returns true, or with
+ * the stream's error if the child dies, or hangs and is killed; the message quotes the last line of
+ * its standard error.
  */
 
 /** Writes all bytes. A dead child is an error, not a signal. */

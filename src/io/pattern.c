@@ -119,7 +119,7 @@ bool fl_pattern_of_name(const char *name, FlPattern *pattern, int *number)
     return true;
 }
 
-/** The text as a pattern has it, which always has a conversion if it has a number. */
+/** Appends a text as part of a pattern, with % doubled. */
 static void append_literal(GString *to, const char *text)
 {
     g_autoptr(GString) escaped = g_string_new(text);

@@ -21,12 +21,12 @@ typedef struct FlPattern {
 /** Reads a pattern. Returns: false with FL_ERROR_USAGE for two numbers or another conversion. */
 bool fl_pattern_parse(const char *text, FlPattern *pattern, GError **error);
 
-/** Whether name fits the pattern, which has a number; the name's goes to *number. */
+/** Returns: true if name fits the pattern, which has a number; stores the name's in *number. */
 bool fl_pattern_match(const FlPattern *pattern, const char *name, int *number);
 
 /**
  * Splits a file name at the last number before its extension.
- * Returns: false, with the pattern left empty, if it has none.
+ * Returns: false, with the pattern left empty, if the name has no number.
  */
 bool fl_pattern_of_name(const char *name, FlPattern *pattern, int *number);
 
@@ -44,7 +44,7 @@ char *fl_output_name(const char *pattern, int number, const char *region, GError
 /** The pattern with the drawing's name in place of {name}; to be freed. */
 char *fl_output_of_film(const char *pattern, const char *film);
 
-/** Whether the pattern has a frame number, so that every frame has its own file. */
+/** Returns: true if the pattern has a frame number, so that every frame has its own file. */
 bool fl_output_is_pattern(const char *pattern);
 
 /** The same for a name of files to read: a file that has just this name is that file. */

@@ -6,7 +6,7 @@
 
 #define FL_PICTURE_FILES "PNG or JPEG" // for messages
 
-/** Whether the name ends as that of a picture that can be read, in any case. */
+/** Returns: true if the name has the ending of a readable picture format, in any letter case. */
 bool fl_picture_named(const char *path);
 
 /**

@@ -7,7 +7,7 @@
 
 /** Files of one name that differ in a number, by rising number. */
 typedef struct FlSeries {
-    char *prefix, *suffix; // before the number, with the folder, and after it
+    char *prefix, *suffix; // parts of the path before and after the number
     int digits;            // width of the first number, with its leading zeros
     int n;
     int *number; // n of them
@@ -18,8 +18,8 @@ typedef struct FlSeries {
  * The numbered files of a folder whose names end in one of `endings` (NULL-terminated, lower case,
  * such as ".png"; letter case aside), grouped into series by prefix and ending.
  *
- * Returns: FlSeries, by prefix, perhaps none; NULL with FL_ERROR_STYLE if the folder cannot be
- * read.
+ * Returns: FlSeries, by prefix, perhaps an empty array; NULL with FL_ERROR_STYLE if the folder
+ * cannot be read.
  */
 GPtrArray *fl_series_in_folder(const char *folder, const char *const *endings, GError **error);
 

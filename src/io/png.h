@@ -11,11 +11,11 @@ typedef struct FlPng {
     int width, height;       // pixels, >= 1
     const uint8_t *rgba;     // width * height * 4 straight sRGBA, 8 bits a channel
     const FlPixelRuns *runs; // the same as runs
-    const FlRect *filled;    // the part that rgba or runs are of; the rest is clear; NULL: all
+    const FlRect *filled;    // the part that rgba or runs cover; the rest is transparent; NULL: all
     const uint16_t *rgba16;  // the same, 16 bits, native byte order
     bool opaque;             // store no alpha; not with runs or filled
     bool fast;               // deflate at level 1 instead of 4
-    const FlRect *place;     // where it lies in a larger picture, from 0; NULL: nowhere
+    const FlRect *place;     // its place in a larger picture, from 0; may be NULL
     const char *const *text; // keyword, text, …, NULL; or NULL
 } FlPng;
 
@@ -40,16 +40,16 @@ GBytes *fl_png_encode(const FlPng *png);
 FlPicture *fl_picture_read_png(const char *path, GError **error);
 
 /**
- * Where a PNG file says that it lies in a larger picture: FlPng.place, with its own size. Reads the
- * head of the file alone. Returns: false if it does not say so, or cannot be read.
+ * Reads the place of a PNG file in a larger picture: FlPng.place, with the file's own size. Reads
+ * the head of the file alone. Returns: false if the file has no place or cannot be read.
  */
 bool fl_png_place(const char *path, FlRect *place);
 
-/** The text that a PNG file has before its pixels for a keyword, see FlPng.text; to be freed. NULL:
- * none. */
+/** The text that a PNG file has before its pixels for a keyword, see FlPng.text; to be freed. NULL
+ * if absent. */
 char *fl_png_text(const char *path, const char *keyword);
 
-/** Whether every pixel of a PNG file is opaque; true if it cannot be read. */
+/** Returns: true if every pixel of a PNG file is opaque, or if the file cannot be read. */
 bool fl_picture_is_opaque(const char *path);
 
 /**

@@ -16,8 +16,8 @@ typedef struct FlSinkLayer {
     int x, y, width, height; // its place in the frame
     const uint8_t *rgba;     // width * height * 4; NULL: it is `runs`
     const FlPixelRuns *runs; // of its rows; NULL: it is `rgba`
-    int since;               // which frame, from 1, was the first with the same pixels; 0: unknown
-    bool multiply;           // what is below is multiplied by it, where FL_SINK_ONE stands for one
+    int since;               // the first frame, from 1, with the same pixels; 0: unknown
+    bool multiply;           // multiplies the layers below; FL_SINK_ONE stands for one
 } FlSinkLayer;
 
 /** A finished frame, borrowed for the call. */
@@ -27,7 +27,7 @@ typedef struct FlSinkFrame {
     const uint16_t *rgba16;    // the same with 16 bits, if the format takes_16; else NULL
     const FlSinkLayer *layers; // bottom first, if the format takes_layers; else NULL
     int n_layers;
-    const char *const *text; // keyword, text, …, NULL: metadata, where the format has it; or NULL
+    const char *const *text; // keyword, text, …, NULL: metadata, if supported; or NULL
 } FlSinkFrame;
 
 /** Gets a frame of width * height pixels. Returns: false with the error set ends the render. */
@@ -40,7 +40,7 @@ typedef struct FlFrameTaker {
     void *data;       // is handed to take
 } FlFrameTaker;
 
-/** What every frame of a sink has in common. */
+/** The parameters of all frames of a sink. */
 typedef struct FlSinkParams {
     const char *path;    // a pattern for picture formats, a file for films
     int width, height;   // pixels, >= 1
@@ -66,8 +66,7 @@ typedef struct FlSinkFormat {
     bool (*open)(FlSink *sink, GError **error); // NULL: nothing to do
     bool (*frame)(FlSink *sink, const FlSinkFrame *frame, GError **error);
     bool (*finish)(FlSink *sink, GError **error); // NULL: nothing to do
-    void (*clear)(
-        FlSink *sink); // frees `state` and, unfinished, leaves no file; NULL: nothing to do
+    void (*clear)(FlSink *sink); // frees `state` and, if unfinished, leaves no file; may be NULL
 } FlSinkFormat;
 
 struct FlSink {

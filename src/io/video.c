@@ -75,8 +75,8 @@ static void add_input(GPtrArray *arguments, const FlSinkParams *params)
 }
 
 /**
- * How colours are stored, and the tags that say so. The tags go onto the frames: ffmpeg's options
- * for the encoder do not reach ProRes. H.264 cuts odd sizes to even ones.
+ * Sets the colour format and its tags. The tags go onto the frames: ffmpeg's options for the
+ * encoder do not reach ProRes. H.264 cuts odd sizes to even ones.
  */
 static void add_colour(GPtrArray *arguments, const Codec *codec)
 {

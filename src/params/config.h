@@ -56,8 +56,8 @@ void fl_config_complete(const FlConfig *config, FlRenderOptions *options);
  * Decides how a region is painted: defaults, then [defaults], then the rule, then the options'
  * settings for every region, then those for this one.
  *
- * rule is an index into config->rules; -1: none. `settings` is not initialised before.
- * Returns: false with FL_ERROR_USAGE about an option's setting; nothing is then to be cleared.
+ * rule is an index into config->rules; -1 without a rule. Initialises `settings`.
+ * Returns: false with FL_ERROR_USAGE about an option's setting; `settings` then needs no clearing.
  */
 bool fl_config_region_settings(const FlConfig *config, int rule, const char *region,
                                const FlRenderOptions *options, FlRegionSettings *settings,

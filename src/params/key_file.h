@@ -6,7 +6,7 @@
 #include <fluidy/error.h>
 #include <stdbool.h>
 
-/** What a reader does with a file; each returns false with an error that names no file or line. */
+/** The callbacks of a reader; each returns false with an error that names no file or line. */
 typedef struct FlKeyReader {
     /** A "[name]" line; name has no outer spaces. */
     bool (*section)(void *data, const char *name, int line, GError **error);

@@ -1,4 +1,4 @@
-/* Media: how paint composites over what lies below it. */
+/* Media: the rule by which paint composites over the layers below. */
 #ifndef FLUIDY_PARAMS_MEDIUM_H
 #define FLUIDY_PARAMS_MEDIUM_H
 
@@ -6,8 +6,8 @@ typedef enum FlMedium {
     FL_MEDIUM_AUTO,        // not set: what suits the background
     FL_MEDIUM_TRANSPARENT, // density over the background, as watercolour
     FL_MEDIUM_OPAQUE,      // hides it the more the thicker it is, as gouache
-    FL_MEDIUM_BODY,        // hides it wherever there is paint, as if cut out of its paper
-    FL_MEDIUM_SOLID,       // hides it wherever it is, however thin; no word asks for it
+    FL_MEDIUM_BODY,  // hides the layers below wherever there is paint, as if cut out of its paper
+    FL_MEDIUM_SOLID, // hides the layers below even where it is thin; no word selects this medium
 } FlMedium;
 
 /** The words, in the enum's order: the form of fl_text_choice(). */
@@ -16,7 +16,7 @@ typedef enum FlMedium {
 /** A medium's word, static. */
 const char *fl_medium_word(FlMedium medium);
 
-/** The medium of a word, AUTO if there is none; for words that are known to be right. */
+/** The medium of a word, AUTO for an unknown word; words must be checked before. */
 FlMedium fl_medium_of_word(const char *word);
 
 #endif

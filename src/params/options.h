@@ -44,12 +44,12 @@ typedef enum FlOptionSection {
     FL_SECTION_REGION, // and [defaults]
 } FlOptionSection;
 
-/** Whether an option decides the painted bytes, and so whether a render can be resumed. */
+/** The effect of an option on the painted bytes: after a change a render cannot be resumed. */
 typedef enum FlOptionBytes {
     FL_BYTES_NEVER,
     FL_BYTES_VALUE,  // its value is a fact of the render
     FL_BYTES_FRAME,  // likewise, but paint does not depend on it
-    FL_BYTES_RESULT, // what follows from it is
+    FL_BYTES_RESULT, // facts that follow from its value are
 } FlOptionBytes;
 
 typedef enum FlOptionGroup {
@@ -66,11 +66,11 @@ typedef enum FlOptionGroup {
 /** A line of the table; strings are static. */
 typedef struct FlOption {
     const char *name; // with dashes; unique in its scope
-    char letter;      // of the command line; 0: none
+    char letter;      // of the command line; 0: no letter
     FlOptionScope scope;
     FlOptionType type;
     size_t offset;     // of its field in the struct of its scope
-    const char *value; // words with | between, or placeholders in capitals; "": it takes none
+    const char *value; // words with | between, or placeholders in capitals; "": no value
     const char *unit;
     double min, max; // inclusive, of numbers
     const char *default_value;
@@ -85,16 +85,17 @@ int fl_option_count(void);
 /** index is 0 … fl_option_count() - 1: the order of options.def, then of params.def. */
 const FlOption *fl_option_at(int index);
 
-/** NULL: there is none. "scale" is an option of a render as well as a key of a region. */
+/** The option with a name, or NULL. "scale" is an option of a render as well as a key of a region.
+ */
 const FlOption *fl_option_find(FlOptionScope scope, const char *name);
 
-/** Whether the value of a region's option is a style's name or folder. */
+/** Returns: true if the value of a region's option is a style's name or folder. */
 bool fl_option_names_style(const char *name);
 
-/** The option of the command line: "width" or the letter "W"; NULL: there is none. */
+/** The option of the command line: "width" or the letter "W"; NULL if unknown. */
 const FlOption *fl_option_find_argument(const char *name);
 
-/** Whether a value follows on the command line. */
+/** Returns: true if a value follows on the command line. */
 bool fl_option_takes_value(const FlOption *option);
 
 /** The words that the value may be, such as "draft normal fine"; NULL: no word. To be freed. */
@@ -121,7 +122,7 @@ bool fl_option_set(const FlOption *option, const char *value, const char *folder
 /** Makes an explicit 0, kept as -1, a 0 again: the option has overridden what it may. */
 void fl_option_drop_marker(const FlOption *option, FlRenderOptions *options);
 
-/** Whether the field is anything but zero. */
+/** Returns: true if the field is not zero. */
 bool fl_option_is_set(const FlOption *option, const FlRenderOptions *options);
 
 void fl_option_copy(const FlOption *option, const FlRenderOptions *from, FlRenderOptions *to);

@@ -1,4 +1,4 @@
-/* How a region is painted: its settings, and the overrides of config and command line. */
+/* The settings of a region, and the overrides of config and command line. */
 #ifndef FLUIDY_PARAMS_REGION_SETTINGS_H
 #define FLUIDY_PARAMS_REGION_SETTINGS_H
 
@@ -6,26 +6,26 @@
 #include "params/params.h"
 #include <stdint.h>
 
-/** What a region does to the regions below it. */
+/** The effect of a region on the regions below. */
 typedef enum FlStacking {
     FL_STACKING_KNOCKOUT, // removed: paper under the paint
     FL_STACKING_GLAZE,    // its density adds to theirs, as a wash over dry paint
     FL_STACKING_OVER, // seen as far as it is transparent; of paint with alpha of its own, no word
 } FlStacking;
 
-/** What paint does at an edge that its shape shares with others. */
+/** The treatment of edges that a shape shares with others. */
 typedef enum FlEdges {
     FL_EDGES_CLOSED, // continues up to the edge: neither a line of paper nor a double rim
     FL_EDGES_SOFT,   // as at any other edge
 } FlEdges;
 
-/** What is known of how the drawing moves. */
+/** The source of the drawing's motion. */
 typedef enum FlMotion {
     FL_MOTION_AUTO,  // its own motion, which carries the paint along
-    FL_MOTION_MASKS, // what outlines show, as in the papers: nothing is carried
+    FL_MOTION_MASKS, // the motion of outlines, as in the papers: paint is not carried along
 } FlMotion;
 
-/** What makes a region's paint: job/engine.h has the table. */
+/** The engine that makes a region's paint: job/engine.h has the table. */
 typedef enum FlEngineChoice {
     FL_ENGINE_AUTO, // the style's
     FL_ENGINE_PATCH,
@@ -33,7 +33,7 @@ typedef enum FlEngineChoice {
     FL_ENGINE_TRANSPORT,
 } FlEngineChoice;
 
-/** What kept lines and small shapes beside them are drawn with. */
+/** The tool for lines that are not painted and for small shapes near these lines. */
 typedef enum FlLine {
     FL_LINE_PLAIN, // as the drawing has them
     FL_LINE_PEN,
@@ -47,20 +47,20 @@ typedef enum FlTint {
     FL_TINT_KEEP, // the exemplar's own colours
 } FlTint;
 
-/** Whether a region is painted at all. */
+/** Selects regions that are drawn unpainted. */
 typedef enum FlPassthrough {
     FL_PASSTHROUGH_AUTO, // strokes and shading are not
     FL_PASSTHROUGH_NO,   // it is
     FL_PASSTHROUGH_YES,  // it is drawn as it is
 } FlPassthrough;
 
-/** How one region is painted, completely resolved. */
+/** The settings of one region, completely resolved. */
 typedef struct FlRegionSettings {
     char *style; // a name or a path; NULL: not set
     FlEngineChoice engine;
     double strength; // of transport: factor on the way of the ink
     int refine;      // of transport: iterations by frame
-    char *tile;      // a transport style that moves the paint; NULL: none
+    char *tile;      // a transport style that moves the paint, or NULL
     FlTint tint;
     bool has_colour;   // with FL_TINT_FILL: `colour` instead of the drawing's fill
     uint8_t colour[3]; // sRGB
@@ -71,7 +71,7 @@ typedef struct FlRegionSettings {
     double load;        // unevenness of the amounts, 0..1
     double pigments;    // play of the hue, 0..1
     double front;       // fronts on the paper ahead of what moves, 0..2
-    double stain;       // stains behind it, 0..1
+    double stain;       // stains behind the front, 0..1
     FlEdges edges;
     FlLine line;   // of a region that is not painted
     int line_boil; // frames until it is drawn anew; 0: never
@@ -79,7 +79,7 @@ typedef struct FlRegionSettings {
     int hold; // frames, 1..1000
     bool reverse;
     FlPassthrough passthrough;
-    char *merge_with; // another region's name; NULL: none
+    char *merge_with; // another region's name, or NULL
     FlParams params;
 } FlRegionSettings;
 
@@ -88,9 +88,9 @@ void fl_region_settings_clear(FlRegionSettings *settings);
 
 /**
  * Sets one thing from text: an option of FL_SCOPE_REGION; "scale" is read as style-scale. A preset
- * sets the motion, too: the papers' know none but that of masks, and have paint that is as
- * the synthesis makes it, without granulation, load, pigments and drawn lines. The engine
- * LazyFluids brings the parameters of the preset fluid, where it was not a preset that chose it.
+ * also sets the motion: the presets of the papers use the motion of masks only, and paint as the
+ * synthesis makes it, without granulation, load, pigments and drawn lines. The engine LazyFluids
+ * brings the parameters of the preset fluid, unless a preset chose the engine.
  *
  * A relative path of a style is taken from `folder`; NULL: the working directory.
  * Returns: false with FL_ERROR_USAGE; the settings are then unchanged.
