@@ -128,7 +128,7 @@ static void hold(float velocity[2], float farthest)
     velocity[0] *= held, velocity[1] *= held;
 }
 
-/* whole: by pixel of the old layer, then by pixel of the fresh one. Ink stays in its shape, too. */
+/* whole: by pixel of the old layer, then by pixel of the fresh one. Ink also stays in its shape. */
 static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, const float *whole,
                           float strength, float *velocity)
 {

@@ -15,7 +15,7 @@ typedef struct FlInkColour {
 typedef struct FlCarriedInkInput {
     const FlTile *tile;      // borrowed
     int width, height;       // of what is painted
-    const FlSliced *patches; // of the style, by which each frame is refined; NULL: none is
+    const FlSliced *patches; // of the style, for the refinement of each frame; NULL: no refinement
     int refine;              // iterations a frame
     float scale;             // px of the drawing per px of the tile
     float strength;          // factor on the motion of ink; 0: flat

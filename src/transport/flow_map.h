@@ -1,4 +1,4 @@
-/* Conservative transport: ink is carried along a velocity and piles up or thins out with it. */
+/* Conservative transport: ink is carried along a velocity field and piles up or thins out. */
 #ifndef FLUIDY_TRANSPORT_FLOW_MAP_H
 #define FLUIDY_TRANSPORT_FLOW_MAP_H
 
@@ -7,7 +7,7 @@
 
 #define FL_SQUARINGS 3 // of the velocity's flow; enough for 16 px
 
-/** How a potential moves ink. */
+/** The direction in which a potential moves ink. */
 typedef enum FlTransportMode {
     FL_TRANSPORT_GATHER, // along its gradient: ink pools
     FL_TRANSPORT_STIR,   // along its contours: ink keeps its density, rings are stirred
@@ -15,7 +15,7 @@ typedef enum FlTransportMode {
 
 /**
  * A velocity's flow, run backwards for unit time by scaling and squaring, on a torus of width *
- * height px, or in a rectangle whose rim is repeated beyond it.
+ * height px, or in a rectangle whose rim is repeated outside.
  */
 typedef struct FlFlowMap {
     int width, height;
@@ -42,13 +42,13 @@ void fl_velocity_adjoint(const FlFlowMap *map, const float *by_velocity, const f
 void fl_flow_map_run(FlFlowMap *map, const float *velocity);
 
 /**
- * density carried by the map: sampled where it came from, times the determinant. density NULL: 1
- * everywhere.
+ * Carries a density by the map: samples it at the map's origin of each pixel, times the
+ * determinant. density NULL: 1 everywhere.
  */
 void fl_flow_map_carry(const FlFlowMap *map, const float *density, float *carried);
 
-/** The derivative by the velocity from those by the carried density and, besides, by the
- * determinant (NULL: none). FL_ERROR_NO_MEMORY. */
+/** The derivative by the velocity from those by the carried density and, in addition, by the
+ * determinant (may be NULL). Errors: FL_ERROR_NO_MEMORY. */
 bool fl_flow_map_adjoint(const FlFlowMap *map, const float *density, const float *by_carried,
                          const float *by_jacobian, float *by_velocity, GError **error);
 

@@ -135,8 +135,8 @@ static bool excess_of(const FlMaterial *material, const FlGuides *guides, const 
     return least < HUGE_VALF;
 }
 
-/* How torn a pixel is: two shapes meet there whose material is not the same. A shape that is
- * squeezed as a whole is alike within `reach` of it, and not torn. */
+/* The tear at a pixel, large where two shapes with different material meet. A shape that is
+ * squeezed as a whole has a similar gradient within `reach` px and is not torn. */
 static float tear_at(const FlMaterial *material, const FlGuides *guides, int x, int y, int reach)
 {
     float f[2][2], across[2][2], along[2][2];

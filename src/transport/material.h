@@ -1,4 +1,4 @@
-/* Where each pixel of a region lies on its material: the pattern rides on the drawing. */
+/* Maps each pixel of a region to its material, so that the pattern moves with the drawing. */
 #ifndef FLUIDY_TRANSPORT_MATERIAL_H
 #define FLUIDY_TRANSPORT_MATERIAL_H
 
@@ -16,15 +16,14 @@ typedef struct FlMaterial {
 
 typedef struct FlRevealed FlRevealed; // transport/revealed.h
 
-/** How what a pixel of the frame shows got there, px; motion may be NULL. Returns: whether that is
- * known; else it is 0. */
+/** The motion that brought the content of a pixel into the frame, px; motion may be NULL. Returns:
+ * true if it is known; else the motion is 0. */
 bool fl_material_motion(const FlGuides *guides, int x, int y, float motion[2]);
 
 /**
  * The material of the next frame in `rect`: carried by the drawing's motion where that is known,
- * by the flow of its outlines where none is, and continued from its surroundings where something
- * appears or is revealed, which has the same rectangle. `guides` are of whole frames.
- * FL_ERROR_NO_MEMORY.
+ * else by the flow of its outlines, and continued from its surroundings where something appears or
+ * is revealed, which has the same rectangle. `guides` are of whole frames. FL_ERROR_NO_MEMORY.
  */
 bool fl_material_advance(const FlMaterial *before, const FlGuides *guides,
                          const FlRevealed *revealed, FlMaterial *now, GError **error);
@@ -34,22 +33,23 @@ bool fl_material_carry(const FlMaterial *before, const FlGuides *guides, const F
                        FlMaterial *now, GError **error);
 
 /**
- * How the material lies at a pixel of the rectangle: the columns of d(material) / d(pixel), by
- * central differences.
+ * The gradient of the material at a pixel of the rectangle: the columns of d(material) / d(pixel),
+ * by central differences.
  */
 void fl_material_gradient(const FlMaterial *material, int x, int y, float f[2][2]);
 
 /**
- * What makes of a displacement of the material one of the frame at a pixel: the gradient's inverse,
- * so that ink is as dense however the material lies. It stretches by a factor of 2 at most.
+ * The matrix from displacements of the material to those of the frame at a pixel: the gradient's
+ * inverse, so that the density of ink does not depend on the material's deformation. It stretches
+ * by a factor of 2 at most.
  */
 void fl_material_inverse(const FlMaterial *material, int x, int y, float inverse[2][2]);
 
-/** Whether a pixel of the rectangle is in the region. */
+/** Returns: true if a pixel of the rectangle is in the region. */
 bool fl_material_is_inside(const FlMaterial *material, const FlGuides *guides, int x, int y);
 
 /**
- * How strained the material is around each pixel of its rectangle: the share, 0..1, of the region
+ * The strain of the material around each pixel of its rectangle: the share, 0..1, of the region
  * within `reach_px` whose pattern is stretched or squeezed too far; by smooth steps, 0 up to a
  * factor of 1.35 and 1 from 1.9. FL_ERROR_NO_MEMORY.
  */
@@ -58,8 +58,8 @@ bool fl_material_strain(const FlMaterial *material, const FlGuides *guides, int 
 
 /**
  * The share of each pixel that is whole, 0..1: 0 where two shapes of the region meet with materials
- * that do not fit, or one of them has another share of it, rising to 1 `reach_px` from there. A
- * shape whose material is squeezed alike all over is whole. share has shifts or not.
+ * that do not fit, or with different shares of the layers, rising to 1 at a distance of `reach_px`.
+ * A shape whose material is squeezed alike all over is whole. share has shifts or not.
  * FL_ERROR_NO_MEMORY.
  */
 bool fl_material_whole(const FlMaterial *material, const FlMaterial *share, const FlGuides *guides,
@@ -70,14 +70,14 @@ typedef struct FlFit {
     double n, x, y, u, v, dot, cross;
 } FlFit;
 
-/** How a material lies at best if it is only turned and moved: (x, y) of the frame on (u, v) of it,
- * turned around there. */
+/** The rigid motion that fits a material best: puts (u, v) of the material on (x, y) of the frame,
+ * turned around that point. */
 typedef struct FlRigid {
     double cosine, sine, x, y, u, v;
 } FlRigid;
 
-/** Adds the region's pixels, as far as the `layer`, 0 or 1, is seen there; share has shifts or not.
- * One after the other, so the sums are always the same. */
+/** Adds the region's pixels, weighted by the visible share of the `layer`, 0 or 1; share has shifts
+ * or not. Serial, so that the sums are reproducible. */
 void fl_material_add_fit(const FlMaterial *material, const FlMaterial *share, size_t layer,
                          const FlGuides *guides, FlFit *sums);
 

@@ -7,8 +7,8 @@
 /** All have the same rectangle. Without a share everything is the old layer. */
 typedef struct FlMaterialLayers {
     FlMaterial old, fresh;
-    FlMaterial share;  // in place of shifts: how much of each layer is seen, 0..1; their sum is 1
-    FlMaterial motion; // in place of shifts: how what is seen got there, px
+    FlMaterial share;  // in place of shifts: visible share of each layer, 0..1; their sum is 1
+    FlMaterial motion; // in place of shifts: motion of the content into the frame, px
 } FlMaterialLayers;
 
 /**

@@ -8,7 +8,7 @@
 #include <stddef.h>
 
 #define FL_POTENTIAL_GRIDS 4
-#define FL_POTENTIAL_COARSEST (1 << FL_POTENTIAL_GRIDS) // px; sides are multiples of it
+#define FL_POTENTIAL_COARSEST (1 << FL_POTENTIAL_GRIDS) // px; divides the sides
 
 /**
  * Grid l (0 …) has a node every 2^(l + 1) px, amid them. Finer grids would carry what central

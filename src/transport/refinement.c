@@ -53,8 +53,8 @@ static bool frame_init(Frame *frame, const FlRefinementInput *input, const FlMat
             (frame->density = fl_alloc(n, sizeof(float), "a density", error)));
 }
 
-/* Whether the pattern at a pixel lies as the plane does, 0..1: what is turned in it would be bent
- * back, and so is left as it is. By smooth steps, 1 up to 15 degrees and 0 from 35. */
+/* The alignment of the pattern at a pixel with the plane, 0..1: a turned pattern would be bent
+ * back, and is therefore not refined. Smooth: 1 up to 15 degrees, 0 from 35. */
 static float aligned(const Frame *frame, const FlFour *four)
 {
     const FlMaterialLayers *layers = frame->layers;

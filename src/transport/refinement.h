@@ -1,7 +1,6 @@
 /*
- * What is added to the way of a region's ink so that it looks more like the style where the region
- * lies: a potential that rides on the drawing and is brought up to date in every frame
- * [Berlanga20, KAGS19].
+ * Adjusts the displacement of a region's ink to look more like the style: a potential that moves
+ * with the drawing and is updated in every frame [Berlanga20, KAGS19].
  */
 #ifndef FLUIDY_TRANSPORT_REFINEMENT_H
 #define FLUIDY_TRANSPORT_REFINEMENT_H
@@ -18,7 +17,7 @@ typedef struct FlRefinementInput {
     uint64_t seed;
 } FlRefinementInput;
 
-/** After a frame; zeroed: there was none. */
+/** The state after a frame; all 0 before the first. */
 typedef struct FlRefinement {
     FlRegionPlane plane;
     float *potential; // by pixel of the plane, px²: as it was solved
@@ -27,7 +26,8 @@ typedef struct FlRefinement {
 
 /**
  * The next frame, whose region is not empty: adds to its ink's velocity, 2 by pixel of the layers'
- * rectangle, tapered px of the drawing. Where nothing moves nothing changes. FL_ERROR_NO_MEMORY.
+ * rectangle, tapered px of the drawing. A region at rest is not refined further. Errors:
+ * FL_ERROR_NO_MEMORY.
  */
 bool fl_refinement_advance(FlRefinement *refinement, const FlRefinementInput *input,
                            const FlMaterialLayers *layers, const FlGuides *guides, float *velocity,

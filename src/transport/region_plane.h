@@ -5,7 +5,7 @@
 
 #include "transport/material_layers.h"
 
-#define FL_REGION_PLANE_GRID 16 // px; corners and sides are multiples of it
+#define FL_REGION_PLANE_GRID 16 // px; divides the corners and sides
 
 typedef struct FlRegionPlane {
     FlRigid lies; // the region on its material, px of the drawing
@@ -18,7 +18,7 @@ typedef struct FlRegionPlane {
 FlRegionPlane fl_region_plane(const FlMaterialLayers *layers, const FlGuides *guides, float scale,
                               int room);
 
-/** Whether two planes are the same pixels of the frame. */
+/** Returns: true if two planes are the same pixels of the frame. */
 bool fl_region_plane_same(const FlRegionPlane *a, const FlRegionPlane *b);
 
 /** The place in the frame of a pixel of the box. */
@@ -27,8 +27,8 @@ void fl_region_plane_to_frame(const FlRegionPlane *plane, int x, int y, float at
 /** The place in the box of one in the frame. */
 void fl_region_plane_from_frame(const FlRegionPlane *plane, float x, float y, float at[2]);
 
-/** How deep in the region a place in the frame lies, px of the plane; outside the rectangle of
- * its layers far beyond the contour. */
+/** The depth in the region of a place in the frame, px of the plane; outside the rectangle of its
+ * layers far beyond the contour. */
 float fl_region_plane_depth(const FlRegionPlane *plane, const FlGuides *guides, FlRect rect,
                             float x, float y);
 

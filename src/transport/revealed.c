@@ -27,11 +27,10 @@ static void read_motion(const FlGuides *guides, FlMaterial *motion)
                                motion->shift + 2 * ((size_t)y * (size_t)r.width + (size_t)x));
 }
 
-/* ---- who was there -----------------------------------------------------------------------------
- */
+/* ---- the owner of a place ------------------------------------------------------------------- */
 
-/* The pixels of the frame before that a pixel is made of: the first column and row, and their
- * numbers, within the rectangle. */
+/* The source pixels of a pixel in the frame before: the first column and row, and the numbers of
+ * columns and rows, within the rectangle. */
 static FlRect source_of(const FlMaterial *before, const FlMaterial *now, int x, int y)
 {
     const FlRect b = before->rect;
@@ -42,7 +41,8 @@ static FlRect source_of(const FlMaterial *before, const FlMaterial *now, int x, 
     return (FlRect){x0, y0, 1 + (sx > (float)x0), 1 + (sy > (float)y0)};
 }
 
-/* The motion of the claimant of each place whose motion is nearest to what it was there. */
+/* For each place of the frame before: the motion of the claimant that is nearest to the motion at
+ * that place. */
 typedef struct Claims {
     const FlMaterial *before, *now;
     const FlGuides *guides;

@@ -1,6 +1,6 @@
 /*
- * What one shape of a region hid in the frame before and does not now: its material is not that of
- * the place it comes from.
+ * Finds areas that one shape of a region hid in the frame before and reveals now: their material is
+ * not that of the place from which the motion leads.
  */
 #ifndef FLUIDY_TRANSPORT_REVEALED_H
 #define FLUIDY_TRANSPORT_REVEALED_H
@@ -10,21 +10,21 @@
 
 /** By pixel of a material's rectangle. */
 struct FlRevealed {
-    FlMaterial motion; // in place of shifts: how what is seen came there, px; unknown: 0
+    FlMaterial motion; // in place of shifts: motion of the content into the frame, px; unknown: 0
     float *apart;      // 0: seen before; above: revealed, px that the other shape moved differently
 };
 
 /**
  * Finds what is revealed in `rect` of the next frame. Two shapes that move apart claim one place of
  * the frame before; it was the one's whose motion has changed less. `before` is the motion of the
- * last frame; without shifts nothing is revealed. FL_ERROR_NO_MEMORY.
+ * last frame; without shifts the result is empty. Errors: FL_ERROR_NO_MEMORY.
  */
 bool fl_revealed_find(const FlMaterial *before, const FlGuides *guides, FlRect rect,
                       FlRevealed *revealed, GError **error);
 
 /**
- * Gives what is revealed the shifts of what is around it and moves alike; if nothing does, they
- * stay. FL_ERROR_NO_MEMORY.
+ * Gives revealed pixels the shifts of neighbours that move alike; without such neighbours the
+ * shifts stay. Errors: FL_ERROR_NO_MEMORY.
  */
 bool fl_revealed_fill(const FlRevealed *revealed, const FlGuides *guides, float *shift,
                       GError **error);

@@ -24,7 +24,7 @@ typedef struct FlSliced FlSliced;
 FlSliced *fl_sliced_new(const float *density, int width, int height, GError **error);
 void fl_sliced_free(FlSliced *sliced); // NULL is fine
 
-/** Where the patches of a target may lie, by level: corners y * width + x in scan order. */
+/** The places of a target's patches, by level: corners y * width + x in scan order. */
 typedef struct FlSlicedPlaces {
     int width, height;
     GArray *level[FL_SLICED_LEVELS]; // of uint32_t

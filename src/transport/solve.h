@@ -7,25 +7,25 @@
 #include "transport/sliced.h"
 #include <fluidy/style.h>
 
-/** What is to be solved, on a torus. */
+/** The problem to be solved, on a torus. */
 typedef struct FlTransportProblem {
     int width, height; // px, multiples of FL_POTENTIAL_COARSEST
     const FlSliced *style;
     const float
         *picture; // ink is to look like this, width * height of mean 1; NULL: like the style
     const float *density;  // before the transport, mean 1; NULL: 1 everywhere
-    const float *coverage; // where its patches count, 0 … 1; NULL: everywhere
+    const float *coverage; // weight of its patches, 0 … 1; NULL: 1
     const float *taper;    // share of the velocity by pixel; NULL: 1
-    const float *velocity; // that is there besides, tapered, 2 by pixel; NULL: none
-    const float *before;   // a potential that is there besides; NULL: none
+    const float *velocity; // an additional velocity, tapered, 2 by pixel; may be NULL
+    const float *before;   // an additional potential; may be NULL
     FlTransportMode mode;
     float pace; // factor on the steps: 1 draws clean bands, 3 reaches the wide features of a wash
     uint64_t key;
 } FlTransportProblem;
 
 /**
- * Solves from nothing, coarse grids and levels first; `effort` scales the number of iterations (1:
- * some 230). progress may be NULL.
+ * Solves from a zero potential, coarse grids and levels first; `effort` scales the number of
+ * iterations (1: some 230). progress may be NULL.
  *
  * potential: made by the caller in the problem's size. Returns: false with FL_ERROR_NO_MEMORY or
  * FL_ERROR_INTERRUPTED set.

@@ -1,4 +1,4 @@
-/* What ink is to look like. */
+/* The ink of a style, the goal of the transport. */
 #ifndef FLUIDY_TRANSPORT_STYLE_INK_H
 #define FLUIDY_TRANSPORT_STYLE_INK_H
 

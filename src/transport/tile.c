@@ -169,7 +169,7 @@ static bool fill(FlTile *tile, const FlPicture *picture, float scale, GError **e
         return false;
     for (size_t i = 0; i < pixels; i++)
         value[i] = UNIT * (float)(256 * picture->rgba[4 * i] + picture->rgba[4 * i + 1] - ZERO);
-    // What is finer than the pixels of the drawing would be a weave of the grids' nodes there.
+    // Detail finer than the drawing's pixels would show as a weave of the grids' nodes.
     const float blur = BLUR_PX / scale;
     const int smoothings =
         (int)(fminf(fmaxf(3 * blur * blur, LEAST_SMOOTHINGS), MOST_SMOOTHINGS) + 0.5f);

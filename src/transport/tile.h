@@ -11,7 +11,7 @@ typedef enum FlTransportDensity {
     FL_DENSITY_RINGS, // in rings along the contour
 } FlTransportDensity;
 
-/** What the solver compares. */
+/** The features that the solver compares. */
 typedef enum FlTransportMatch {
     FL_MATCH_PATCHES, // the patches of the picture: a pattern of the same kind
     FL_MATCH_PICTURE, // its pixels: the tile is the picture, which must be of its size
@@ -34,7 +34,7 @@ typedef struct FlTile {
     float *spline; // size * size: periodic cubic B-spline coefficients of the potential, px²
 } FlTile;
 
-/** Whether a style's folder holds a tile. */
+/** Returns: true if a style's folder holds a tile. */
 bool fl_tile_exists(const char *folder);
 
 /** Reads the section. FL_ERROR_STYLE: file, line, what was wrong. */
