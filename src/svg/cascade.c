@@ -23,8 +23,8 @@ typedef struct Cascade {
     FlCssSheet *sheet;
     GHashTable *rules; // FlSelector key -> GArray of indices into the sheet's rules
     FlSelectorWork work;
-    GHashTable *said; // what was warned about
-    double seconds;   // of the moment that is shown; NAN: animations are left out
+    GHashTable *said; // texts of the warnings that were given
+    double seconds;   // the moment that is shown; NAN: animations are left out
     FlFilmLength *length;
     int n_clips;
 } Cascade;
@@ -319,7 +319,7 @@ static void set_font_size(Style *style, const char *text, bool root)
 
 /* ---- animated values ------------------------------------------------------------------------- */
 
-/** What animations of an element read and write. */
+/** The data that animations of an element read and write. */
 typedef struct Animated {
     Cascade *c;
     const xmlNode *node;

@@ -10,7 +10,7 @@
  * geometry and path data as attributes, clip shapes as <clipPath>. No style sheet remains.
  *
  * seconds: the moment at which CSS animations are shown; NAN: they are left out, with a warning.
- * length: unless NULL, the ends and loops of CSS animations are added to it.
+ * length: collects the ends and loops of CSS animations; may be NULL.
  *
  * The real paths of imported sheets are added to `files`. Each kind of declaration that is left
  * out causes one warning.

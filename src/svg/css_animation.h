@@ -15,17 +15,17 @@ void fl_css_animations_free(FlCssAnimations *animations); // NULL is fine
 /** Sets `animation` or one of its longhands; declarations come in the order of the cascade. */
 void fl_css_animations_set(FlCssAnimations *animations, const char *property, const char *value);
 
-/** Gives the value of a property of the element without animations; "" if there is none. */
+/** Gives the value of a property of the element without animations; "" without a value. */
 typedef const char *FlCssUnderlying(const void *data, const char *property);
 
-/** Takes the value of a property that an animation gives; `value` is to be freed by it. */
+/** Takes the value of a property that an animation gives, and ownership of `value`. */
 typedef void FlCssTake(void *data, const char *property, char *value);
 
 /**
  * Calls `take` for each property that is animated after so many seconds, those of later animations
  * last. Values may contain calc().
  *
- * length: unless NULL, the ends and loops of the animations are added to it.
+ * length: collects the ends and loops of the animations; may be NULL.
  */
 void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet *sheet,
                              double seconds, const FlCssUnits *units, FlCssUnderlying *underlying,

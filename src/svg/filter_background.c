@@ -16,7 +16,7 @@ static xmlNode *first_element(xmlNode *node)
     return node;
 }
 
-/** The attribute by which an element reads the background; NULL if it does not read it. */
+/** The attribute by which an element reads the background; NULL for other elements. */
 static const char *background_input(const xmlNode *node)
 {
     static const char *const inputs[] = {"in", "in2"};

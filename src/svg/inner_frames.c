@@ -32,7 +32,7 @@ static xmlNode *find(xmlNode *node, const char *id)
     return found;
 }
 
-/** The references that an FBF.SVG shows in turn, and the <use> that does; NULL: it is none. */
+/** The references that an FBF.SVG shows in turn, and its <use>; NULL for other files. */
 static char **fbf_frames(const xmlDoc *doc, xmlNode **use)
 {
     *use = find(xmlDocGetRootElement(doc), "PROSKENION");
@@ -144,7 +144,7 @@ static double common_period(const GArray *loops, bool *cut)
     return *cut ? MIN(longest, FL_LONGEST_LOOP) : seconds;
 }
 
-/** The length of what plays in a document, which this changes; 0: nothing does. */
+/** The length of the animations in a document, which this changes; 0 without animations. */
 static double length_of(xmlDoc *doc, const char *path, bool *cut)
 {
     g_autoptr(GArray) loops = g_array_new(FALSE, FALSE, sizeof(double));

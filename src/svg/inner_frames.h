@@ -20,8 +20,8 @@ typedef struct FlMoments {
 typedef struct FlInnerFrames {
     FlFramesFrom from; // LAYERS, PAGES or TIME; FILES: the document is one frame
     int n;
-    double seconds; // of the whole film; 0: it has none
-    bool cut;       // loops go on beyond it, since they meet later than after FL_LONGEST_LOOP
+    double seconds; // of the whole film; 0 if it is not timed
+    bool cut;       // loops are cut, since their common period is longer than FL_LONGEST_LOOP
 } FlInnerFrames;
 
 /**
@@ -35,7 +35,7 @@ typedef struct FlInnerFrames {
 bool fl_inner_frames(xmlDoc *doc, const char *path, FlFramesFrom from, const FlMoments *moments,
                      FlInnerFrames *frames, GError **error);
 
-/** Makes page `page`, from 1, the document's only one. FL_ERROR_INPUT if there is none. */
+/** Makes page `page`, from 1, the document's only one. FL_ERROR_INPUT if it is missing. */
 bool fl_select_page(xmlDoc *doc, int page, const char *path, GError **error);
 
 #endif

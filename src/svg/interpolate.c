@@ -93,7 +93,8 @@ double fl_css_ease(const char *function, double x)
 
 /* ---- texts with numbers ---------------------------------------------------------------------- */
 
-/** The length of the number that `s` begins with; 0: none. Digits inside names are none. */
+/** The length of the number at the start of `s`; 0 without a number. Digits inside names do not
+ * count. */
 static size_t number_length(const char *s, const char *begin)
 {
     const char *digits = s + (*s == '-' || *s == '+');
@@ -314,7 +315,7 @@ static bool take_function(const char **s, char **name, char ***arguments)
     return true;
 }
 
-/** One function between two of one name; `from_none`: a is what does nothing. */
+/** Writes the function between two of one name; `from_none`: a is the neutral function. */
 static bool mix_function(GString *out, const char *name, char **a, char **b, double p)
 {
     const bool scale = g_str_has_prefix(name, "scale");
@@ -334,8 +335,7 @@ static bool mix_function(GString *out, const char *name, char **a, char **b, dou
     return true;
 }
 
-/** The functions of a list that do nothing: "translate(3px) scale(2)" gives translate(0px)
- * scale(1). */
+/** The neutral functions for a list: "translate(3px) scale(2)" gives translate(0px) scale(1). */
 static char *neutral(const char *list)
 {
     GString *out = g_string_new(NULL);

@@ -13,16 +13,16 @@ double fl_css_ease(const char *function, double x);
 /**
  * The value at a share p from `a` to `b`; p may lie beyond 0 … 1. Texts that differ in their
  * numbers only, colours, and lengths in different units have values between; path data and
- * transforms are such texts. "+" of them is fl_add_values().
+ * transforms are such texts. fl_add_values() adds such values.
  *
- * Returns: the text, to be freed; NULL if there is none between.
+ * Returns: the text, to be freed; NULL if the values cannot be interpolated.
  */
 char *fl_interpolate(const char *a, const char *b, double p);
 
 /** a + n * b, number by number; NULL if the texts differ in more than numbers. To be freed. */
 char *fl_add_values(const char *a, const char *b, double n);
 
-/** How far two values are apart, for even speed; 1 where that is not known. */
+/** The distance of two values, for even speed; 1 if it is unknown. */
 double fl_value_distance(const char *a, const char *b);
 
 /**

@@ -6,9 +6,9 @@
 #include "svg/svg_frame.h"
 
 /**
- * Digests all that a leaf is drawn from: its element, what the groups around it say, style sheets
- * and, where something refers to them, definitions and the paths of files. The contents of files
- * are assumed to be unchanged. In doubt an element is included.
+ * Digests all that a leaf is drawn from: its element, the attributes of the groups around, style
+ * sheets and, if an element refers to them, definitions and the paths of files. The contents of
+ * files are assumed to be unchanged. In doubt an element is included.
  *
  * leaf, unit: arrays to fill, one digest for each leaf and unit of fl_svg_leaves(); a zero digest
  * means unknown.

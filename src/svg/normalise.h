@@ -4,7 +4,7 @@
 
 #include "svg/document.h"
 
-/** The attribute with the id of what a <use> copied: the copy itself has none. */
+/** The attribute with the id of the element that a <use> copied: the copy itself has no id. */
 #define FL_COPIED_ID "data-fl-id"
 
 #define FL_WHOLE_ALL "*" // in place of an id: the document is one leaf

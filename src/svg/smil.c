@@ -136,7 +136,7 @@ static GArray *read_conditions(const Timeline *timeline, const xmlNode *node, co
     return list;
 }
 
-/** The element that an animation is for: that of its href, else the one around it. */
+/** The element that an animation is for: that of its href, else its parent. */
 static xmlNode *target_of(const Timeline *timeline, xmlNode *node)
 {
     g_autofree char *plain = attribute(node, "href");
@@ -235,7 +235,7 @@ static void tell(const Timeline *timeline, int base, const Interval *interval)
     }
 }
 
-/** When an interval ends that begins at t. */
+/** The end of an interval that begins at t. */
 static double end_of(const Animation *a, double t)
 {
     for (guint i = 0; i < a->ends->len; i++)
@@ -244,7 +244,7 @@ static double end_of(const Animation *a, double t)
     return t + a->active;
 }
 
-/** The next begin of an animation that makes an interval; INFINITY: none. */
+/** The next begin of an animation that makes an interval; INFINITY if there are no more. */
 static double next_begin(const Animation *a)
 {
     const Interval *last =
@@ -298,7 +298,8 @@ static char **list_of(const char *text)
     return list;
 }
 
-/** What an animation goes through: values, or from, to and by. `base`: the value without it. */
+/** The values of an animation, from its attributes values, or from, to and by. `base`: the value
+ * without the animation. */
 static char **values_of(const Animation *a, const char *base, bool *adds)
 {
     g_autofree char *values = attribute(a->node, "values"), *from = attribute(a->node, "from");
@@ -311,7 +312,7 @@ static char **values_of(const Animation *a, const char *base, bool *adds)
     if (fl_is(a->node, "set")) {
         list[0] = g_strdup(to ? to : "");
     } else if (to) {
-        *adds &= from != NULL; // a lone `to` starts from what is there
+        *adds &= from != NULL; // a lone `to` starts at the present value
         list[0] = g_strdup(from ? from : base);
         list[1] = g_strdup(to);
     } else if (by) {
@@ -361,7 +362,8 @@ static bool spline_of(const Animation *a, int i, double control[4])
     return true;
 }
 
-/** Where a share of a round lies: between values *at and *at + 1, at the share that is returned. */
+/** Locates a share of a round between the values *at and *at + 1. Returns: the share of the way
+ * between these two. */
 static double place_in_round(const Animation *a, const double *times, int n, double share,
                              const char *mode, int *at)
 {
@@ -404,7 +406,7 @@ static double share_of_round(const Animation *a, const Interval *interval, doubl
     return CLAMP(round - *rounds, 0, 1);
 }
 
-/** Returns: true for an attribute whose values have nothing between them. */
+/** Returns: true for an attribute whose values cannot be interpolated. */
 static bool is_discrete(const char *name)
 {
     static const char *const names[] = {"href", "class", "preserveAspectRatio", "in", "type", NULL};
@@ -412,7 +414,7 @@ static bool is_discrete(const char *name)
     return g_strv_contains(names, name) || (property && property->kind == FL_CSS_TEXT);
 }
 
-/** The value at a moment; NULL: none. */
+/** The value at a moment; NULL if the animation has no effect. */
 static char *value_at(const Animation *a, const char *base, double seconds, bool *adds)
 {
     const Interval *interval = interval_at(a, seconds);
@@ -435,7 +437,7 @@ static char *value_at(const Animation *a, const char *base, double seconds, bool
     const double share = share_of_round(a, interval, seconds, &rounds);
     const double p = place_in_round(a, times, n, share, mode, &at);
     char *value = p > 0 ? fl_interpolate(values[at], values[at + 1], p) : g_strdup(values[at]);
-    if (!value) // nothing lies between, such as "visible" and "hidden"
+    if (!value) // not interpolable, such as "visible" and "hidden"
         value = g_strdup(values[p < .5 ? at : at + 1]);
     if (rounds > 0 && accumulate && strcmp(accumulate, "sum") == 0) {
         char *sum = fl_add_values(value, values[n - 1], rounds);

@@ -4,17 +4,17 @@
 
 #include "svg/document.h"
 
-/** How long animations go on. */
+/** The length of animations. */
 typedef struct FlFilmLength {
-    double end;    // seconds at which the last one that ends is over; 0: none ends
+    double end;    // seconds at which the last finite animation ends; 0: all are endless
     GArray *loops; // double: periods in seconds of those that go on for ever
 } FlFilmLength;
 
 /**
- * Puts the values that animations have after so many seconds into the document and takes the
- * animations out of it. Events and scripts never start one.
+ * Puts the values that animations have after so many seconds into the document and removes the
+ * animations. Animations that events or scripts start are ignored.
  *
- * length: unless NULL, the ends and loops of the animations are added to it.
+ * length: collects the ends and loops of the animations; may be NULL.
  */
 void fl_smil_apply(xmlDoc *doc, double seconds, FlFilmLength *length);
 

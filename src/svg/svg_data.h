@@ -1,4 +1,4 @@
-/* The data of an FlSvg and the librsvg handles that draw it; private to this folder. */
+/* The data of an FlSvg and the librsvg handles that draw it; private to src/svg. */
 #ifndef FLUIDY_SVG_SVG_DATA_H
 #define FLUIDY_SVG_SVG_DATA_H
 

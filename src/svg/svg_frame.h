@@ -23,7 +23,7 @@ typedef struct FlPageSize {
 typedef struct FlSvgOptions {
     FlCanvas canvas;
     double dpi;               // of mm, cm, in, pt; 0: 96
-    const char *const *whole; // ids of groups that are drawn as one leaf; NULL: none
+    const char *const *whole; // ids of groups that are drawn as one leaf; may be NULL
     FlFramesFrom from;        // LAYERS, PAGES or TIME: the frame is one of several in the file
     int layer;                // its layer or page, from 1
     double seconds;           // its moment, from the start of the animations
