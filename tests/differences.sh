@@ -26,7 +26,7 @@ opacity-of-a-group 2
 opacity-of-a-stroked-shape 2
 sheet-from-a-file 2
 switch-by-an-empty-extension 2
-use-below-a-descendant-selector 4
+use-below-a-descendant-selector 3
 use-of-a-symbol-with-a-transform 2
 use-of-an-svg 2
 EOF

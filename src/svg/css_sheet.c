@@ -288,12 +288,14 @@ static void read_property(Reader *reader, const char *name, const char *block)
 /** Reads a file of rules. */
 static void read_file(Reader *reader, const char *href, const Place *place)
 {
+    g_autofree char *lower = g_ascii_strdown(href, -1);
     bool is_there = false;
     g_autofree char *file = fl_reference_file(place->file, href, &is_there), *css = NULL;
     size_t bytes = 0;
     if (file && !g_ptr_array_find_with_equal_func(reader->files, file, g_str_equal, NULL))
         g_ptr_array_add(reader->files, g_strdup(file));
     if (!file || !is_there || !fl_file_check(file, FL_ERROR_INPUT, NULL) ||
+        !(g_str_has_suffix(lower, ".css") || strstr(lower, ".css?")) ||
         !fl_reference_is_inside(reader->path, file) ||
         !fl_file_read(file, LARGEST_BYTES, &css, &bytes, NULL)) {
         warn(reader, "sheet", href,
@@ -302,7 +304,8 @@ static void read_file(Reader *reader, const char *href, const Place *place)
              : !fl_file_check(file, FL_ERROR_INPUT, NULL) ? "is a pipe or a device and is left out"
              : !fl_reference_is_inside(reader->path, file)
                  ? "is outside the drawing's folder and is left out"
-                 : "cannot be read and is left out");
+             : !strstr(lower, ".css") ? "is not a .css file and is left out"
+                                      : "cannot be read and is left out");
         return;
     }
     g_autofree char *bare = fl_css_without_comments(css);

@@ -245,7 +245,9 @@ static void walk_unit(Walk *w, xmlNode *node)
             g_array_index(leaves->leaf, FlLeaf, first + i).unit = -1;
         return;
     }
-    const FlGroupUnit unit = {make_leaf(w, node), first, n, blends || is_inseparable(node)};
+    const bool isolated = blends && !fl_changes_as_one(node);
+    const FlGroupUnit unit = {make_leaf(w, node), first, n,
+                              (blends && !isolated) || is_inseparable(node), isolated};
     g_array_append_val(leaves->unit, unit);
 }
 
@@ -265,7 +267,7 @@ static void walk(Walk *w, xmlNode *node)
         if (is_drawn(child) || fl_is_whole(child, w->whole)) {
             const FlLeaf leaf = make_leaf(w, child);
             g_array_append_val(w->leaves->leaf, leaf);
-        } else if (fl_is_container(child) && w->unit < 0 && fl_changes_as_one(child)) {
+        } else if (fl_is_container(child) && w->unit < 0 && fl_has_effects(child)) {
             walk_unit(w, child);
         } else if (fl_is_container(child)) {
             walk_group(w, child);

@@ -29,7 +29,7 @@ typedef struct FlLeaf {
 } FlLeaf;
 
 /**
- * A group with opacity, a mask, a filter or a blend mode: more than one shape in it
+ * A group with opacity, a mask, a filter, a blend mode or isolation: more than one shape in it
  * cannot be drawn one by one where they overlap.
  */
 typedef struct FlGroupUnit {
@@ -37,6 +37,7 @@ typedef struct FlGroupUnit {
     int first, n;     // its leaves
     bool inseparable; // the group or its content has a filter or blend mode: drawn as one even
                       // without overlap
+    bool isolated;    // its content blends within the group alone
 } FlGroupUnit;
 
 /** A group with a mask, of two or more leaves, which are drawn without it and masked then. */

@@ -146,6 +146,19 @@ static void keep(const FlFrameProbe *f, FlStrings *s, FlSurveyFrame *frame)
     frame->parts = parts;
 }
 
+/** The isolated groups in which something blends, unless they are one leaf already; NULL: none. */
+static char *isolated_groups(const FlFrameProbe *f, const FlSurveyFrame *frame)
+{
+    const GArray *units = fl_svg_leaves(f->svg)->unit;
+    GString *groups = g_string_new(NULL);
+    for (guint i = 0; i < units->len; i++) {
+        const FlGroupUnit *unit = &g_array_index(units, FlGroupUnit, i);
+        if (unit->isolated && !fl_has_group(frame->whole, unit->leaf.id))
+            g_string_append_printf(groups, "%s%s", groups->len ? "\n" : "", unit->leaf.id);
+    }
+    return g_string_free(groups, groups->len == 0);
+}
+
 /** Probes a frame, again for each group that becomes one leaf. */
 static bool scan_frame(Survey *s, FlFrameProbe *f, GError **error)
 {
@@ -162,7 +175,8 @@ static bool scan_frame(Survey *s, FlFrameProbe *f, GError **error)
         if (verdict == FL_VERDICT_DIFFERS && (!group || tries >= MOST_WHOLE) &&
             fl_self_check_is_gross(f->check) && !fl_has_group(frame->whole, FL_WHOLE_ALL)) {
             g_free(group);
-            group = g_strdup(FL_WHOLE_ALL);
+            group = isolated_groups(f, frame);
+            group = group ? group : g_strdup(FL_WHOLE_ALL);
             tries = 0;
         }
         if (verdict == FL_VERDICT_DIFFERS && group && tries < MOST_WHOLE) {
