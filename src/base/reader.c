@@ -58,9 +58,9 @@ const uint8_t *fl_reader_take(FlReader *reader, size_t n, size_t each)
 void fl_reader_copy(FlReader *reader, void *to, size_t bytes)
 {
     const uint8_t *from = fl_reader_take(reader, bytes, 1);
-    if (from)
+    if (from && bytes > 0)
         memcpy(to, from, bytes);
-    else
+    else if (bytes > 0) // `to` may be NULL for none
         memset(to, 0, bytes);
 }
 
