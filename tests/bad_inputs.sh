@@ -58,7 +58,7 @@ svg animated "<circle id='c' r='16' fill='#aa3311'><animate attributeName='r' to
 svg rule "<style>@container x { circle { fill: red } }</style>$shape"
 svg piped "$shape<image id='i' href='../piped/p.png' width='9' height='9'/>" && mkfifo piped/p.png
 svg sheet "<style>@import url('s.pipe');</style>$shape" && mkfifo sheet/s.pipe
-svg styled "<style>@import 'a.txt';</style>$shape" && echo '@import "b.txt";' >styled/a.txt && touch styled/b.txt
+svg styled "<style>@import 'a.css';</style>$shape" && echo '@import "b.css";' >styled/a.css && touch styled/b.css
 svg used "$shape<use href='p.pipe#a'/>" && mkfifo used/p.pipe
 svg escape "$shape<rect id='a&#10;b' width='9' height='9' fill='url(#x&#9;y)'/>"
 svg image "$shape<image id='i' href='gone.png' width='9' height='9'/>"
@@ -166,8 +166,8 @@ table() {
 2|shows/sub/p_1.png: is read by this render; *|shows -y --check -o shows/sub/p_%d.png
 2|shows/sub/p_1.png: is read by this render; *|shows -y --styles 01 -o shows/sub/p_1.png
 2|clear.png: is read by this render; *|good -y -b clear.png --methods default -o clear.png
-2|styled/a.txt: is read by this render; *|styled -y --stats styled/a.txt -o y_%d.png
-2|styled/b.txt: is read by this render; *|styled -y --stats styled/b.txt -o y_%d.png
+2|styled/a.css: is read by this render; *|styled -y --stats styled/a.css -o y_%d.png
+2|styled/b.css: is read by this render; *|styled -y --stats styled/b.css -o y_%d.png
 2|dumped/red-aa3311/clear.png: is read by this render; *|good -y -b dumped/red-aa3311/clear.png --dump dumped -o y_%d.png
 2|page/index.html: is read by this render; *|good -y -c page/index.html --report page -o y_%d.png
 2|x.mp4: maps are PNG files; expected .png|good --check -o x.mp4

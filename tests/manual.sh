@@ -68,7 +68,7 @@ if ! command -v ffmpeg >/dev/null; then
     skip 'every command of the tutorial works' 'no ffmpeg'
 else
     (cd tutorial && unset FLUIDY_STYLES && bash -e ../tutorial.run) >err 2>&1 && [ -s tutorial/hills.mov ] &&
-        [ "$(find tutorial/layers -name '*.png' | wc -l)" = 49 ] && [ -s tutorial/mine/style.ini ]
+        [ "$(find tutorial/layers -name '*.png' | wc -l)" = 72 ] && [ -s tutorial/mine/style.ini ]
     result $? 'every command of the tutorial works'
 fi
 

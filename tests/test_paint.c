@@ -12,7 +12,7 @@ enum { WIDTH = 64, HEIGHT = 56, FRAMES = 5, STEP = 3, PIXELS = WIDTH * HEIGHT };
 /* A block that moves to the right, and what was painted. */
 typedef struct Film {
     FlRegionPaint region;
-    FlSetting setting[4];
+    FlSetting setting[6];
     char *style;
     uint8_t paint[FRAMES][3 * PIXELS], layer[FRAMES][4 * PIXELS];
     int n_taken, stop_at;
@@ -208,7 +208,9 @@ static void a_cut_out_brings_its_own_alpha(void)
     film->style = g_test_build_filename(G_TEST_DIST, "style-flames", NULL);
     film->setting[0].value = film->style, film->setting[2].value = "keep";
     film->setting[3] = (FlSetting){.name = "engine", .value = "lazyfluids"};
-    film->region.n_settings = 4;
+    film->setting[4] = (FlSetting){.name = "front", .value = "0"}; // frames have them, layers not
+    film->setting[5] = (FlSetting){.name = "stain", .value = "0"};
+    film->region.n_settings = 6;
     paint(film);
     assert_as_rendered(film, 1);
     for (int merge = 0; merge < 2; merge++) {
