@@ -17,8 +17,8 @@ typedef struct FlBlurKernel {
 } FlBlurKernel;
 
 /**
- * Blurs a plane in place, along x, then along y. Pixels beyond the plane count as their nearest
- * pixel in it. The same bytes on every processor and thread count. FL_ERROR_NO_MEMORY.
+ * Blurs a plane in place, along x, then along y. Pixels beyond the plane count as the nearest pixel
+ * of the plane. The same bytes on every processor and thread count. FL_ERROR_NO_MEMORY.
  */
 bool fl_blur_with(float *plane, int width, int height, const FlBlurKernel *kernel, GError **error);
 

@@ -9,7 +9,7 @@
  * the spill
  *
  * The outline of one frame, the motion of an earlier one and the finish of a yet earlier one run in
- * parallel, for one region is often most of a film; none needs the results of the others.
+ * parallel, since one region is often most of a film; they do not need each other's results.
  */
 #include "guides/build_guides.h"
 #include "base/alloc.h"
@@ -29,7 +29,7 @@
 /** The flow of one frame before smoothing. */
 typedef struct Motion {
     int frame;   // -1: the slot is free
-    float *flow; // interleaved, of the outline's box; NULL: nothing moves
+    float *flow; // interleaved, of the outline's box; NULL: no motion
 } Motion;
 
 typedef struct OutlineSlot {
@@ -56,7 +56,7 @@ typedef struct Builder {
     FlChangeMap changes; // of the frame that is being finished
     bool previous_moves; // of the frame that was finished last
     float *speed[2];     // of the contour, of a frame: in that frame, and in the one in hand
-    bool contour_moves;  // whether the first of them is not 0 all over
+    bool contour_moves;  // true if the first of them is not 0 all over
 } Builder;
 
 static void builder_clear(Builder *b)
@@ -170,7 +170,7 @@ static bool smooth_distance(Builder *b, int frame, float *distance, GError **err
            (sigma <= 0.0f || fl_blur(distance, source->width, source->height, sigma, error));
 }
 
-/** The frame with the distance field that its motion is taken from. */
+/** The frame, with the distance field that determines its motion. */
 static bool distance_of(Builder *b, int frame, FlFlowFrame *out, GError **error)
 {
     FlOutline *outline;
@@ -258,7 +258,7 @@ static void drop_motion(Builder *b, int frame)
     slot->frame = -1;
 }
 
-/** *flow: NULL if nothing moves in the whole window, else of outline's box, to be freed. */
+/** *flow: NULL without motion in the whole window, else of outline's box, to be freed. */
 static bool smooth_motion(Builder *b, int frame, const FlOutline *outline, float **flow,
                           GError **error)
 {
@@ -359,7 +359,7 @@ static bool put_extent(Builder *b, int frame, const FlOutline *outline, const in
 {
     FlFrameRecord *record = &b->sequence->frames[frame];
     const size_t n = fl_rect_pixels(outline->box);
-    // a frame without predecessor borrows its flow from the next interval: nothing has moved yet
+    // a frame without predecessor borrows its flow from the next interval, which is not counted
     const bool counts = flow && frame > 0 && !record[-1].empty;
     if (!counts && !fl_extent_moved(b->extent))
         return true;
@@ -388,7 +388,7 @@ static bool put_motion(Builder *b, int frame, const FlOutline *outline, const fl
     return put_extent(b, frame, outline, fixed, error) && put_flow(b, frame, outline, fixed, error);
 }
 
-/** Whether a motion of the outline's box is known anywhere in the shape. */
+/** True if a motion of the outline's box is known anywhere in the shape. */
 static bool any_known(const int32_t *motion, const FlOutline *outline)
 {
     bool known = false;

@@ -1,4 +1,4 @@
-/* What changes between two frames of a mask: its coverage, or where it flows or moves. */
+/* The changes between two frames of a mask: its coverage, or where it flows or moves. */
 #ifndef FLUIDY_GUIDES_CHANGE_MAP_H
 #define FLUIDY_GUIDES_CHANGE_MAP_H
 
@@ -11,11 +11,11 @@ typedef struct FlChangeMap {
     bool any; // square changes
 } FlChangeMap;
 
-/** Of frames of width * height px, in which nothing changes so far. FL_ERROR_NO_MEMORY. */
+/** Makes an empty map of frames of width * height px. FL_ERROR_NO_MEMORY. */
 bool fl_change_map_init(FlChangeMap *changes, int width, int height, GError **error);
 void fl_change_map_clear(FlChangeMap *changes);
 
-/** Forgets what it has of a pair of frames. */
+/** Empties the map for the next pair of frames. */
 void fl_change_map_reset(FlChangeMap *changes);
 
 /** Marks where the coverage differs. */

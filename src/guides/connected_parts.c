@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 
-/** The root of a label in the union-find forest; halves the path to it. */
+/** The root of a label in the union-find forest; halves the path to the root. */
 static int32_t root_of(GArray *parents, int32_t label)
 {
     int32_t *parent = (int32_t *)(void *)parents->data;

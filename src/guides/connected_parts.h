@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/** Which part each pixel belongs to; pixels that share a side belong together. */
+/** The connected parts of a mask; pixels that share a side are connected. */
 typedef struct FlConnectedParts {
     int n_parts;
     int32_t *part;   // 1 … n_parts in the order of their first pixel, 0 outside; width * height
@@ -25,8 +25,8 @@ void fl_connected_parts_drop(const FlConnectedParts *parts, size_t n_pixels, uin
 void fl_connected_parts_clear(FlConnectedParts *parts);
 
 /**
- * The boxes of the pixels of each label from 0 to most, in the coordinates of `plane`, which is the
- * rectangle that the labels are of; empty where a label has none. box: most + 1.
+ * The boxes of the pixels of each label from 0 to most, in the coordinates of `plane`, the
+ * rectangle that the labels cover; a label without pixels has an empty box. box: most + 1.
  */
 void fl_boxes_of_labels(const int32_t *label, FlRect plane, int most, FlRect *box);
 

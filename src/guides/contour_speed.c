@@ -26,7 +26,7 @@ typedef struct Contour {
     const FlContourStep *step;
     FlRect rect;
     GArray *points;   // of Point, row by row
-    int32_t *nearest; // of rect: the point next to each pixel; -1: none is near
+    int32_t *nearest; // of rect: the point next to each pixel; -1: no point is near
 } Contour;
 
 static void contour_clear(Contour *contour)
@@ -78,7 +78,7 @@ static float last_at(const FlContourStep *step, float x, float y)
     return step->last ? step->last[(size_t)py * (size_t)width + (size_t)px] : 0;
 }
 
-/* The speed of a pixel of the contour, if that has a direction there. */
+/* The speed of a pixel of the contour, if the contour has a direction at the pixel. */
 static bool measure(const FlContourStep *step, Point *point)
 {
     const FlOutline *now = step->now;

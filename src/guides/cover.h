@@ -17,7 +17,7 @@ void fl_cover_fill(const FlOutlines *outlines, const FlGeometry *g, FlRect rect,
 void fl_cover_line(const FlOutlines *outlines, const FlGeometry *g, double reach_px, bool closed,
                    FlRect rect, FlCoverSpan *span, void *data);
 
-/** The width of the leaf's stroke in px; 0: none known. */
+/** The width of the leaf's stroke in px; 0: unknown. */
 double fl_stroke_px(const FlGeometry *g);
 
 #endif

@@ -1,4 +1,4 @@
-/* The direction guide: an 8-bit angle that is defined where nothing moves, too. */
+/* The direction guide: an 8-bit angle, also defined for pixels at rest. */
 #ifndef FLUIDY_GUIDES_DIRECTION_H
 #define FLUIDY_GUIDES_DIRECTION_H
 
@@ -15,8 +15,8 @@ int16_t fl_fine_angle(float x, float y);
 
 /**
  * Directions of n pixels: below still_px that of the normal, from twice still_px on that of the
- * flow, between them a smooth blend of both. flow may be NULL: nothing moves. Arrays are
- * interleaved pairs; normals need no unit length. 0 where coverage is below FL_INSIDE.
+ * flow, between them a smooth blend of both. flow may be NULL: no motion. Arrays are interleaved
+ * pairs; normals need no unit length. 0 where coverage is below FL_INSIDE.
  */
 void fl_direction(const uint8_t *coverage, const float *flow, const float *normal, size_t n,
                   float still_px, uint8_t *angle);

@@ -1,4 +1,4 @@
-/* How the drawing itself moves, which its outline need not show: displacements and turns. */
+/* The motion of the drawing itself, which its outline need not show: displacements and turns. */
 #ifndef FLUIDY_GUIDES_DISPLACEMENT_H
 #define FLUIDY_GUIDES_DISPLACEMENT_H
 

@@ -21,9 +21,9 @@ typedef struct Work {
     const uint8_t *mask;
     GArray *seeds;         // of FlContourPiece
     GArray *pixels;        // of int32_t: where each seed sits
-    FlContourLinks *links; // from each seed to those of the pixels around it
-    int32_t *seed_at;      // which seed sits on this pixel; -1: none
-    int16_t *near_y;       // row of the nearest seed in this column; -1: none
+    FlContourLinks *links; // from each seed to the seeds of the pixels around
+    int32_t *seed_at;      // index of the seed on this pixel; -1: no seed
+    int16_t *near_y;       // row of the nearest seed in this column; -1: no seed
     int32_t *nearest;      // index of the seed with the nearest centre
 } Work;
 
@@ -62,8 +62,8 @@ static float coverage_at(const Work *work, int x, int y)
 }
 
 /**
- * How far inside a straight edge the centre of a pixel lies, if the edge with the normal (nx, ny)
- * leaves it this coverage: the inverse of the area of a square cut by a line.
+ * The depth of a pixel's centre inside a straight edge with the normal (nx, ny) that leaves the
+ * pixel this coverage: the inverse of the area of a square cut by a line.
  */
 static float depth_of_coverage(float coverage, float nx, float ny)
 {
@@ -163,8 +163,8 @@ static void mark_beside(const uint8_t *row, const uint8_t *other, int w, uint8_t
         mixed[x] |= row[x] ^ other[x + 1];
 }
 
-/** Step 1. Pixels with a neighbour on the other side, diagonals included, which are where the shape
- * is or next to it; mixed: scratch, a row. */
+/** Step 1. Pixels with a neighbour on the other side, diagonals included; they lie in the shape or
+ * next to the shape. mixed: scratch, a row. */
 static void find_seeds(Work *work, uint8_t *mixed)
 {
     const FlRect page = {0, 0, work->width, work->height};

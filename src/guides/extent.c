@@ -41,7 +41,7 @@ static bool box_contains(const FlRect *box, int x, int y)
     return x >= box->x && y >= box->y && x < box->x + box->width && y < box->y + box->height;
 }
 
-/** Writes nothing where nothing has moved yet. */
+/** Avoids a write to a sum that is already 0. */
 static void clear(int32_t sum[2])
 {
     if (sum[0] != 0 || sum[1] != 0)

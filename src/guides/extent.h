@@ -21,13 +21,13 @@ void fl_extent_free(FlExtent *extent); // NULL is fine
  * Advances the sum to the next frame: adds the flow of the interval between them inside the mask,
  * starts again at 0 outside, and writes the norm of the sum for the pixels of mask_box.
  *
- * coverage is of mask_box; flow is interleaved and of flow_box, NULL: none. What lies outside its
- * box is 0. A mask_box of no size empties the sum. extent: area of mask_box.
+ * coverage is of mask_box; flow is interleaved and of flow_box, NULL: no flow. Flow outside its box
+ * is 0. A mask_box of no size empties the sum. extent: area of mask_box.
  */
 void fl_extent_step(FlExtent *extent, const FlRect *mask_box, const uint8_t *coverage,
                     const FlRect *flow_box, const int32_t *flow, int32_t *norm);
 
-/** Whether a flow was ever added: until then the norm is 0 all over, and steps may be left out. */
+/** True if a flow was ever added: until then the norm is 0 all over, and steps may be left out. */
 bool fl_extent_moved(const FlExtent *extent);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlExtent, fl_extent_free)

@@ -13,7 +13,7 @@ static const float least_gradient = 0.25f; // below it a gradient has no directi
 typedef struct Traces {
     FlConnectedParts parts;
     FlTrace *before, *after; // by part number
-    uint32_t *fixed;         // how many pixels of the part have a velocity
+    uint32_t *fixed;         // number of pixels of the part that have a velocity
 } Traces;
 
 static void traces_clear(Traces *traces)

@@ -6,8 +6,8 @@
 
 /** One frame with the distance field of its motion: the outline's, or a smoothed one. */
 typedef struct FlFlowFrame {
-    const FlOutline *outline; // NULL or empty: nothing is there
-    const float *distance;    // of the frame; unused where nothing is there
+    const FlOutline *outline; // NULL or empty: the shape is absent
+    const float *distance;    // of the frame; unused if the shape is absent
 } FlFlowFrame;
 
 /**
@@ -16,11 +16,11 @@ typedef struct FlFlowFrame {
  * at rest. One that moved by more than its own size has the velocity of its centre.
  *
  * Where the frame's contour and the other frame's nearest one face opposite ways, the difference of
- * distances says nothing about normal motion (a thin part has moved by more than its width): these
+ * distances does not measure normal motion (a thin part has moved by more than its width): these
  * pixels are left to the diffusion. limit_px bounds the speed. flow is interleaved, 2 * area of the
  * frame's box. now is not empty; all outlines share one frame size.
  *
- * Returns: false with FL_ERROR_NO_MEMORY set; *moves tells whether any of it is not 0.
+ * Returns: false with FL_ERROR_NO_MEMORY set; *moves tells if any flow is not 0.
  */
 bool fl_flow_construct(const FlFlowFrame *now, const FlFlowFrame *before, const FlFlowFrame *after,
                        float limit_px, float *flow, bool *moves, GError **error);

@@ -12,7 +12,7 @@
 
 enum { FLO_HEADER_BYTES = 12 };
 static const float flo_magic = 202021.25f, flo_unknown = 1e9f, most_px = 1e5f;
-static const float flo_no_value = 1.666666752e9f; // what others write for unknown
+static const float flo_no_value = 1.666666752e9f; // value of other programs for unknown
 
 static bool is_flo(const char *path)
 {
@@ -159,7 +159,7 @@ void fl_flow_halve(const float *flow, int width, int height, float *half)
             size_t child[4];
             float most = -1;
             children(width, height, x, y, child);
-            for (int k = 0; k < 4; k++) { // the fastest: beside a shape nothing moves
+            for (int k = 0; k < 4; k++) { // the fastest: pixels beside a shape do not move
                 const float *at = flow + 2 * child[k], speed = at[0] * at[0] + at[1] * at[1];
                 float *to = half + 2 * ((size_t)y * w + x);
                 if (speed > most || k == 0 || isnan(most))

@@ -6,7 +6,7 @@
 #include "guides/guides.h"
 #include "guides/outline.h"
 
-/** What is stored of a frame, cropped to its box. */
+/** The stored planes of a frame, cropped to its box. */
 typedef enum FlGuidePlane {
     FL_GUIDE_PLANE_COVERAGE_ANGLE, // coverages, then angles; bytes
     FL_GUIDE_PLANE_FLOW,           // interleaved, FL_FLOW_ONE a px
@@ -25,7 +25,7 @@ typedef enum FlGuidePlane {
 typedef struct FlFrameRecord {
     FlRect box;
     bool empty;                        // no pixel inside
-    bool rests;                        // nothing changes since the frame before
+    bool rests;                        // no change since the frame before
     bool unknown;                      // the drawing's motion into it is known nowhere
     int32_t holder[FL_N_GUIDE_PLANES]; // the frame whose block holds the plane; -1: all 0
 } FlFrameRecord;
@@ -43,7 +43,7 @@ static inline size_t fl_guide_plane_block(int frame, FlGuidePlane plane)
     return (size_t)frame * FL_N_GUIDE_PLANES + plane;
 }
 
-/** How many integers a pixel of a plane has. */
+/** The number of integers per pixel of a plane. */
 static inline size_t fl_plane_step(FlGuidePlane plane)
 {
     return plane == FL_GUIDE_PLANE_FLOW || plane == FL_GUIDE_PLANE_MOTION ||

@@ -93,8 +93,8 @@ void fl_guide_sequence_free(FlGuideSequence *sequence)
     g_free(sequence);
 }
 
-/** Puts a plane of integers of 1 / one px, cropped to `box`, into one of `part`, which is all 0
- * and, in rows of zeros, is not written to; channels: 1 or 2. */
+/** Copies a plane of integers of 1 / one px, cropped to `box`, into the plane of `part`, which must
+ * be all 0; rows of zeros are not written. channels: 1 or 2. */
 static void place_fixed(FlRect box, const int32_t *crop, int channels, int one, FlRect part,
                         float *plane)
 {
@@ -152,7 +152,7 @@ static void clear_plane(const FlGuides *guides, void *plane, size_t bytes)
         memset(plane, 0, bytes);
 }
 
-/** What the drawing does; beside its shape nothing is known of it. */
+/** Reads the drawing's motion, which is unknown beside its shape. */
 static bool get_motion(const FlGuideSequence *sequence, int frame, FlGuides *guides, GError **error)
 {
     const FlFrameRecord *record = &sequence->frames[frame];
@@ -204,7 +204,7 @@ bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame)
     return sequence->frames[frame].rests;
 }
 
-/** What a frame takes that has the mask of the one before. */
+/** Marks the squares taken by a frame that has the mask of the frame before. */
 static bool mark_taken(const FlGuideSequence *sequence, int frame, FlChangeMap *changes,
                        GError **error)
 {
@@ -267,7 +267,7 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
     return true;
 }
 
-/** Whether guides are of the whole first frame, and its distance is kept. */
+/** True if guides are of the whole first frame and its distance is kept. */
 static bool is_kept(const FlGuideSequence *sequence, int frame, const FlGuides *guides)
 {
     const FlGuideSource *source = &sequence->source;

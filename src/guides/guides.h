@@ -8,41 +8,41 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/** How the guides are made; every length is in level-0 pixels. */
+/** Parameters of the guides; every length is in level-0 pixels. */
 typedef struct FlGuideParams {
-    float flow_sigma_frames; // temporal Gaussian on the flow, cut at 3 sigma [F21 App. A]; 0: none
+    float flow_sigma_frames; // temporal Gaussian on the flow, cut at 3 sigma [F21 App. A]; 0: off
     float
-        dist_sigma_frames; // temporal Gaussian on the distance, the thesis' way [P21 §4.1]; 0: none
+        dist_sigma_frames; // temporal Gaussian on the distance, the thesis' way [P21 §4.1]; 0: off
     float still_px;        // slower than this the direction is the outward normal's; px/frame
     float flow_limit;      // a contour moves at most this share of the larger side in one frame
     float dist_sigma_px; // spatial Gaussian on the distance that flow is made from [P21 §4.1]; 0:
                          // none
-    float contour_px;    // 1/480 of the page's larger side, for FlGuides.contour_speed; 0: none
+    float contour_px;    // 1/480 of the page's larger side, for FlGuides.contour_speed; 0: off
 } FlGuideParams;
 
 /**
- * The guides of one frame, or of a part of it, beside which everything rests. All planes are
- * row-major, width * height, without padding.
+ * The guides of one frame, or of a part of the frame; the rest of the frame is at rest. All planes
+ * are row-major, width * height, without padding.
  *
- * Directions are angles of 256 steps a turn, 0 along +x, 64 along +y (down), and are defined
- * inside the mask, still pixels included. Flow, angle and extents are 0 outside the mask.
+ * Directions are angles of 256 steps a turn, 0 along +x, 64 along +y (down), and are defined inside
+ * the mask, still pixels included. Flow, angle and extents are 0 outside the mask.
  */
 typedef struct FlGuides {
-    int x, y; // where the part lies in the frame; 0, 0: as the frame does
+    int x, y; // position of the part in the frame; 0, 0 for a frame
     int width, height;
     bool disposable;  // not read after the engine, which may clear them before it paints
     bool blank;       // flow, extents and motion are 0 all over, as fl_guides_init() leaves them
     uint8_t *mask;    // coverage 0..255; a pixel is inside from FL_INSIDE on
     float *distance;  // signed distance to the contour, px, positive inside, everywhere defined
-    float *depth;     // as the paint takes it, fl_rim_depth(); the distance until that is made
+    float *depth;     // depth used by the synthesis, from fl_rim_depth(); before that, the distance
     float *flow;      // interleaved u, v: px per frame, 2 * width * height
     uint8_t *angle;   // direction of the flow
     float *ext_plus;  // |sum of the flow since the pixel was last outside the mask|, px
     float *ext_minus; // the same, summed from the end of the sequence
     float *contour_speed; // px per frame by which the contour next to a pixel, inside or outside,
                           // advances: fl_contour_speed(); 0 where that is not made
-    // How the drawing moves into the frame, where the source knows it:
-    bool has_motion; // somewhere in the mask; else the two planes mean nothing
+    // The drawing's motion into the frame, if the source knows the motion:
+    bool has_motion; // somewhere in the mask; else the two planes are undefined
     int32_t *motion; // interleaved, FL_MOTION_ONE a px, FL_MOTION_UNKNOWN; 2 * width * height
     int16_t *turn;   // the turn of the drawing, 65536 a turn; 0 where that is unknown
     FlRestingParts resting; // of the frame: they are as in the one before; others may be as well
@@ -65,11 +65,11 @@ static inline FlRect fl_guides_rect(const FlGuides *guides)
 
 #define FL_INSIDE 128
 
-/** Whether all pixels of a region have the same motion. */
+/** Tells if all pixels of a region have the same motion. */
 typedef enum FlUniformMotion {
     FL_UNIFORM_NOT,
-    FL_UNIFORM_REST,   // none has moved
-    FL_UNIFORM_UNKNOWN // where any of them was is not known
+    FL_UNIFORM_REST,   // all are at rest
+    FL_UNIFORM_UNKNOWN // the former place of every pixel is unknown
 } FlUniformMotion;
 
 /** A mask sequence, with its flow and the drawing's motion if they are known. */
@@ -84,11 +84,12 @@ typedef struct FlGuideSource {
      * Writes the drawing's true displacement into the frame, 2 * width * height floats,
      * interleaved: the content of a pixel moved by it since the picture painted before; NAN:
      * unknown. It is used as given, neither smoothed nor part of the flow. Frames come in order,
-     * with the outlines of `mask`. NULL: none is known.
+     * with the outlines of `mask`. NULL: unknown in all frames.
      */
     bool (*motion)(void *data, int frame, const FlOutlinePair *outlines, float *motion,
                    GError **error);
-    /** Whether that displacement is uniform: then it is not asked for. NULL: not known before. */
+    /** Tells if that displacement is uniform: then motion() is not called. NULL: unknown
+     * beforehand. */
     FlUniformMotion (*uniform)(void *data, int frame, const FlOutlinePair *outlines);
     bool keeps_flow;  // unrounded, for fl_guide_sequence_flow()
     bool keeps_first; // distances of the first frame, until fl_guide_sequence_drop_first()
@@ -101,13 +102,13 @@ typedef struct FlGuideSequence FlGuideSequence;
 FlGuideSequence *fl_guide_sequence_new(const FlGuideSource *source, const FlGuideParams *params,
                                        GError **error);
 
-/** What the source keeps of the first frame goes, and is made again if it is asked for. */
+/** Frees the data kept of the first frame; it is made again on demand. */
 void fl_guide_sequence_drop_first(FlGuideSequence *sequence);
 
 void fl_guide_sequence_free(FlGuideSequence *sequence); // NULL is fine
 
-/** Fills `guides`, which the caller made with fl_guides_init() for the sequence's frame, or part of
- * it. */
+/** Fills `guides`, which the caller made with fl_guides_init() for the sequence's frame, or a part
+ * of the frame. */
 bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                            GError **error);
 
@@ -119,20 +120,21 @@ bool fl_guide_sequence_distance(const FlGuideSequence *sequence, int frame, FlGu
 bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                               GError **error);
 
-/** Whether a frame has the mask of the frame before and nothing moves in it, so that its guides
- * need not be got. */
+/** True if a frame has the mask of the frame before and is free of motion, so that its guides need
+ * not be read. */
 bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame);
 
 /**
- * What changes in a frame since the one before, and what either takes: see fl_resting_parts_init(),
- * to be freed; *square stays NULL where nothing was before. FL_ERROR_NO_MEMORY.
+ * The squares that change from the frame before, and the squares that either frame takes: see
+ * fl_resting_parts_init(), to be freed. *square stays NULL without a frame before.
+ * FL_ERROR_NO_MEMORY.
  */
 bool fl_guide_sequence_changes(const FlGuideSequence *sequence, int frame, uint8_t **square,
                                GError **error);
 
 /**
- * The flow that directions were made from, before it was rounded as FlGuides has it: a source that
- * gives it gets the same guides. flow: 2 * width * height. The source must keep it.
+ * The flow that directions were made from, before it was rounded for FlGuides: a source that
+ * supplies this flow gets the same guides. flow: 2 * width * height. The source must keep the flow.
  */
 bool fl_guide_sequence_flow(const FlGuideSequence *sequence, int frame, float *flow,
                             GError **error);
@@ -148,7 +150,7 @@ void fl_guides_drop_motion(FlGuides *guides);
 
 /**
  * The shape guide of a mask: Gaussian blur of its coverage, sigma = border_px / 3, cut at border_px
- * [F21 §3.1]. In 0..1; pixels beyond the frame count as their nearest pixel in it.
+ * [F21 §3.1]. In 0..1; pixels beyond the frame count as the nearest pixel of the frame.
  */
 bool fl_shape_blur(const uint8_t *mask, int width, int height, float border_px, float *shape,
                    GError **error);

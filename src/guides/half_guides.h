@@ -4,7 +4,7 @@
 
 #include "guides/guides.h"
 
-/** A flow in twice its size, width * height, in px of that. */
+/** A flow in twice its size, width * height, in px of the larger size. */
 void fl_flow_double(const float *half, int width, int height, float *full);
 
 /** A plane of `bytes` a pixel in twice its size, width * height: each pixel four times. */

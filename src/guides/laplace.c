@@ -18,8 +18,8 @@
 
 /**
  * A grid with a rim of outside cells, so that every cell has four neighbours. An array has two
- * halves for each of height + 2 rows. Nothing flows into the finest level, where half a row of
- * sources does for all.
+ * halves for each of height + 2 rows. The finest level has no sources, so that half a row of zeros
+ * serves all its rows.
  */
 typedef struct Level {
     int width, height;
@@ -93,7 +93,7 @@ static FlColumns span_around(const Level *level, int first, int last)
     return (FlColumns){first / 16 * 16, MIN((last + 7) / 8 * 8, 2 * level->pairs)};
 }
 
-/** Where the finest level has cells. */
+/** Finds the columns of each row of the finest level that have cells. */
 static void find_spans(const Level *level, const uint8_t *cell)
 {
     g_auto(FlArea) area = {0};
@@ -106,7 +106,7 @@ static void find_spans(const Level *level, const uint8_t *cell)
     }
 }
 
-/** Where a coarse level has cells. */
+/** Finds the columns of each row of a coarse level that have cells. */
 static void halve_spans(const Level *coarse, const Level *fine)
 {
     for (int y = 0; y < coarse->height; y++) {
@@ -142,13 +142,14 @@ static void for_rows(const Level *level, const Level *other, RowWork *work)
     }
 }
 
-/** Where the even or the odd cells of a row begin; y may be in the rim. */
+/** The index of the first even or odd cell of a row; y may be in the rim. */
 static size_t half_row(const Level *level, int odd, int y)
 {
     return ((size_t)(y + 1) * 2 + (size_t)odd) * level->half;
 }
 
-/** Where the first cell of half a row and its neighbours are; the right one is next to the left. */
+/** The indices of the first cell of half a row and of its neighbours; the right one follows the
+ * left. */
 typedef struct Cross {
     size_t own, left, above, below;
 } Cross;
@@ -389,7 +390,7 @@ static void v_cycle(const Grid *grid)
     }
 }
 
-/** What remains of the error must not break the maximum principle. */
+/** Clamps the result: the remaining error must not break the maximum principle. */
 static void store_half(const Grid *grid, int component, int odd, int y, float *field)
 {
     const Level *level = &grid->level[0];

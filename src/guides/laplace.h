@@ -18,8 +18,8 @@ typedef enum FlSolverCell {
  *
  * cell: width * height FlSolverCell. field: interleaved pairs, 2 * width * height; read where
  * fixed, written everywhere (0 outside). Every component of the result lies between the least and
- * greatest fixed value. Free cells that no fixed one reaches get values in that range too; fix
- * them if it matters.
+ * greatest fixed value. Free cells that no fixed one reaches also get values in that range; fix
+ * them if their values matter.
  *
  * cycles: V-cycles after the first solution, which comes from the coarse levels: 0 where only
  * smoothness matters, 2 for an error of about 1 % of the range.

@@ -8,7 +8,8 @@
 #define STEP_SIDE 14
 #define STEP_CORNER 20
 
-/* How fast a half width may grow: corners of 90 degrees grow more slowly by themselves. */
+/* The slopes by which a half width may grow: corners of 90 degrees grow more slowly by
+ * themselves. */
 #define SLOPE_SIDE 28
 #define SLOPE_CORNER 40
 
@@ -23,13 +24,13 @@ typedef struct Disc {
     uint16_t radius, value;
 } Disc;
 
-/** Where the depth is largest around, and the discs that fit in there. */
+/** The local maxima of depth, and the discs that fit in around them. */
 typedef struct Discs {
     int width, height;
     uint16_t cap;
     const float *distance;
     uint16_t *depth; // sixteenths, at most cap; 0 outside
-    uint16_t *seen;  // the same, 0 where it is not seen, too
+    uint16_t *seen;  // the same, but 0 at pixels that are not seen
     int reach;       // most rows of a disc above and below its centre
     uint16_t *half;  // [radius * (reach + 1) + rows from the centre]: half a row's length, px, + 1
     GArray *centres; // of Disc, row by row
@@ -124,8 +125,8 @@ static void read_column(const Discs *discs, int y, Column column)
 }
 
 /**
- * Whether a disc around a pixel is not held by that of a neighbour. Of discs as large as any those
- * count that another kind is next to: all are below such a one whose depth is less.
+ * Marks pixels whose disc is not contained in a neighbour's disc. A disc of the largest size counts
+ * only if a depth around it is below the cap, which smaller discs always satisfy.
  */
 static void mark_centres(Column column, int n, int16_t cap, uint8_t *restrict centre)
 {
@@ -154,10 +155,10 @@ static float distance_along(const Discs *discs, int x, int y, int direction, flo
 }
 
 /**
- * How much larger a disc is than what fits in, so that it reaches into the corner that it lies in:
- * discs leave corners of large shapes bare, which would be crisp between soft sides. In a corner
- * the depth rises evenly from the tip, as it does in tapers, but faster. In the mouth of a limb it
- * rises as fast, but there is no tip behind.
+ * The growth of a disc beyond the one that fits in, so that it reaches into its corner: discs leave
+ * corners of large shapes bare, which would be crisp between soft sides. In a corner the depth
+ * rises evenly from the tip, as it does in tapers, but faster. In the mouth of a limb it rises as
+ * fast, but there is no tip behind.
  */
 static float corner_growth(const Discs *discs, int x, int y)
 {
@@ -283,8 +284,7 @@ static void limit_to(int16_t *restrict row, const int16_t *restrict neighbours, 
     }
 }
 
-/** Whether a pixel of a row is above what the one on its left allows, or that one above what the
- * right one does. */
+/** True if a pixel of a row exceeds the limit that its left or right neighbour sets. */
 static bool is_steep(const int16_t *row, int n)
 {
     int16_t steep = 0;
@@ -328,7 +328,7 @@ static void limit_slope(uint16_t *plane, int width, int height)
     }
 }
 
-/** Whether any is below the cap, but for those outside. */
+/** True if a pixel inside is below the cap. */
 static bool any_narrow(const uint16_t *plane, size_t n, uint16_t cap)
 {
     int16_t narrow = 0;
@@ -344,7 +344,7 @@ static bool any_narrow(const uint16_t *plane, size_t n, uint16_t cap)
 /** Room for means over the windows of a tile. */
 typedef struct Means {
     uint16_t *before; // the whole plane
-    int16_t *plane;   // of the tile and what is around it, as what follows
+    int16_t *plane;   // of the tile and its surroundings, like the sums
     uint32_t *count, *sum;
 } Means;
 
@@ -369,7 +369,7 @@ static bool means_init(Means *means, size_t n, int r, GError **error)
            (means->sum = fl_alloc_unset(tile, sizeof *means->sum, "local widths", error));
 }
 
-/** Whether all that is inside is as wide as any: then the means are, too. */
+/** True if all pixels inside have the capped width: then their means have the capped width. */
 static bool is_wide(const uint16_t *plane, int width, FlRect rect, uint16_t cap)
 {
     for (int y = rect.y; y < rect.y + rect.height; y++)
@@ -437,7 +437,8 @@ static void reach_around(int16_t *plane, int width, int height, int x, int y, GA
         }
 }
 
-/** Whether pixels of a row are known and one of their four neighbours in the plane is not. */
+/** Marks known pixels of a row that have an unknown pixel among their four neighbours in the
+ * plane. */
 static void find_contour(const int16_t *row, const int16_t *up, const int16_t *down, int n,
                          uint8_t *restrict contour)
 {

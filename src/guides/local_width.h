@@ -1,4 +1,4 @@
-/* How wide a shape is at each of its pixels. */
+/* The local width of a shape at each of its pixels. */
 #ifndef FLUIDY_GUIDES_LOCAL_WIDTH_H
 #define FLUIDY_GUIDES_LOCAL_WIDTH_H
 
@@ -9,8 +9,8 @@
 #define FL_WIDTH_ONE 16      /**< half widths are in sixteenths of a pixel */
 #define FL_WIDTH_MOST_PX 256 /**< the widest that is told apart */
 
-/** How far outside there are half widths: patches of pixels inside reach two pixels out, and far
- * more on coarse levels. */
+/** The distance outside up to which there are half widths: patches of pixels inside reach two
+ * pixels out, and far more on coarse levels. */
 #define FL_WIDTH_OUTSIDE_PX 12
 
 /** The half width of a shape that is as wide as is ever asked for, cap_px. */
@@ -26,11 +26,11 @@ static inline uint16_t fl_width_cap(float cap_px)
  * limb's width and not its body's, and is smoothed within the shape. Pixels outside have that of
  * the shape next to them up to FL_WIDTH_OUTSIDE_PX from it, then 0.
  *
- * Discs count, and are as large, as their centre is seen, 0..255 in `seen`: a ring around what lies
- * over the shape is as narrow as it looks. NULL: all of it is seen.
+ * Discs are scaled by the visibility of their centre, 0..255 in `seen`: a ring around a covering
+ * shape is as narrow as it looks. NULL: all of the shape is seen.
  *
- * distance, seen and half_width are width * height; distance is that of fl_distance(), and positive
- * inside. *narrow: whether any half width inside is below the cap.
+ * distance, seen and half_width are width * height; distance is from fl_distance(), positive
+ * inside. *narrow: true if a half width inside is below the cap.
  *
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */

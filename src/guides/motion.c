@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-#define NEAR_PX 1.5        // a contour pixel this near to an outline is explained by it
+#define NEAR_PX 1.5        // distance at which an outline explains a contour pixel
 #define UNEXPLAINED 0.05   // share of a leaf's contour pixels that may not be
 #define BOX_PX 3.0         // by how much what is drawn may exceed the outline's box
 #define BOX_SHARE 0.015    // and which share of the frame's side: boxes are seen on a small picture
@@ -18,7 +18,7 @@
 #define STEP_PX 1.0        // in which both outlines are walked
 #define LEAST_STEPS 6
 #define STRAY_PX                                                                                   \
-    4 // how far from a leaf's outline its pixels may lie, if not all outlines are known
+    4 // largest distance of a leaf's pixels from its outline, if not all outlines are known
 
 /** Marks of pixels, beside the leaves 1 … n. */
 enum { UNLABELLED = 0 };
@@ -63,7 +63,7 @@ static bool has_fill(const Work *w, int i)
     return part == FL_PART_FILL || (part == FL_PART_WHOLE && geometry_of(w, i)->filled);
 }
 
-/** The width of the stroke that the region has of a leaf, 0: none. */
+/** The width of the stroke that the region has of a leaf, 0: no stroke. */
 static double stroke_of(const Work *w, int i)
 {
     const FlPart part = leaf_at(w, i)->part;
@@ -120,7 +120,8 @@ static bool is_contour(const Work *w, int x, int y)
             (y > 0 && !is_inside(w, x, y - 1)) || (y < w->h - 1 && !is_inside(w, x, y + 1)));
 }
 
-/** Whether librsvg draws the leaf within its outline's box; of strokes it knows a wide one only. */
+/** True if librsvg draws the leaf within its outline's box. Strokes pass unchecked: librsvg gives
+ * only a wide box for them. */
 static bool lies_in_box(const Work *w, int i)
 {
     if (stroke_of(w, i) > 0)
@@ -166,7 +167,7 @@ static bool find_trusted(Work *w)
     return all;
 }
 
-/* ---- which leaf a pixel belongs to ---- */
+/* ---- the leaf of each pixel ---- */
 
 typedef struct Labelling {
     Work *work;
@@ -219,7 +220,7 @@ static bool spread_labels(Work *w, int steps, GError **error)
     return true;
 }
 
-/* ---- what a pixel's motion is ---- */
+/* ---- the motion of each pixel ---- */
 
 static void move_affinely(const Work *w, int32_t label, FlRect box, const FlAffine *back)
 {
@@ -238,7 +239,7 @@ static void move_affinely(const Work *w, int32_t label, FlRect box, const FlAffi
 typedef struct Stamps {
     const Work *work;
     int32_t label;
-    bool stroke; // its outline is the middle of it, not its contour
+    bool stroke; // the outline is the middle of the stroke
     FlRect box;
     uint8_t *cell;
     float *value, *nearest; // nearest: squared distance of the outline that stamped
@@ -252,7 +253,8 @@ static bool is_label_contour(const Stamps *s, int x, int y)
            at[1] != s->label || at[-w->w] != s->label || at[w->w] != s->label;
 }
 
-/** Stamps a straight piece from p to q, which came by u and v, on the pixels around it. */
+/** Stamps a straight piece from p to q, whose ends moved by u and v, on the pixels around the
+ * piece. */
 static void stamp(Stamps *s, FlPoint p, FlPoint q, FlPoint u, FlPoint v)
 {
     const double x = q.x - p.x, y = q.y - p.y, l = x * x + y * y;
@@ -372,7 +374,7 @@ static bool by_masks(const Work *w, int32_t label)
     return label == UNLABELLED || motion_of(w, label - 1)->kind == FL_MOTION_REGISTERED;
 }
 
-/** Whether it is not known where the leaf's paint was: what is added is spread, not moved. */
+/** True if the former place of the leaf's paint is unknown: added parts are spread, not moved. */
 static bool is_unknown(const Work *w, int i)
 {
     const FlMotionKind kind = motion_of(w, i)->kind;

@@ -8,7 +8,7 @@
 /** A region in two frames. All planes are of `rect`, row-major. */
 typedef struct FlMovingRegion {
     FlRect rect;                           // in the frame
-    int side;                              // the frame's larger side, px: nothing moves farther
+    int side;                              // the frame's larger side, px: the limit of motion
     const uint8_t *mask_before, *mask_now; // coverage 0..255
     FlOutlinePair outlines;                // of these masks, made where they are not known
     const FlOutlines *before, *now;
@@ -16,15 +16,15 @@ typedef struct FlMovingRegion {
     const GArray *leaves;            // FlRegionLeaf of `now`, bottom up
 } FlMovingRegion;
 
-/** What the pixels' motion comes from, pixels with coverage >= FL_INSIDE. */
+/** Pixel counts by the source of their motion, pixels with coverage >= FL_INSIDE. */
 typedef struct FlMotionShares {
     int64_t exact;      // from outlines
     int64_t registered; // from masks
 } FlMotionShares;
 
 /**
- * Writes where every pixel of the region comes from: x - motion is its place in the frame before;
- * px, interleaved, 2 * area of rect, 0 outside.
+ * Writes the motion of every pixel of the region: x - motion is its place in the frame before; px,
+ * interleaved, 2 * area of rect, 0 outside.
  *
  * A leaf's outline is believed only if the contour of the region lies along it where librsvg draws
  * the leaf, or a clip or mask may have changed it; the others, and those whose structure changes,
@@ -36,8 +36,8 @@ typedef struct FlMotionShares {
 bool fl_motion_of_region(const FlMovingRegion *region, float *motion, FlMotionShares *shares,
                          GError **error);
 
-/** Whether neither the mask has changed, by its outlines, nor any leaf has moved: then all of it is
- * 0. The masks themselves are not read. */
+/** True if neither the mask (by its outlines) nor any leaf has changed: then all motion is 0. The
+ * masks themselves are not read. */
 bool fl_motion_rests(const FlMovingRegion *region);
 
 #endif

@@ -1,4 +1,4 @@
-/* One mask with what the flow needs of it, shared by the frames that look the same. */
+/* A mask with the data that the flow needs, shared by frames with the same mask. */
 #ifndef FLUIDY_GUIDES_OUTLINE_H
 #define FLUIDY_GUIDES_OUTLINE_H
 
@@ -31,16 +31,16 @@ FlOutline *fl_outline_new(const uint8_t *mask, int frame_width, int frame_height
 FlOutline *fl_outline_ref(FlOutline *outline); // NULL is fine, as for _unref
 void fl_outline_unref(FlOutline *outline);
 
-/** Whether the outline is that of this mask. */
+/** True if the outline is that of this mask. */
 bool fl_outline_equal(const FlOutline *outline, const uint8_t *mask);
 
-/** Whether two outlines are those of the same mask. */
+/** True if two outlines are those of the same mask. */
 bool fl_outlines_alike(const FlOutline *one, const FlOutline *other);
 
-/** Whether a pixel of the frame is inside. */
+/** True if a pixel of the frame is inside. */
 bool fl_outline_contains(const FlOutline *outline, int x, int y);
 
-/** Whether a pixel is inside and one of its four neighbours in the frame is not. */
+/** True if a pixel is inside and one of its four neighbours in the frame is not. */
 bool fl_outline_is_contour(const FlOutline *outline, int x, int y);
 
 /**

@@ -8,7 +8,7 @@
 typedef struct Blob {
     double x, y;   // centre, px in the frame
     double area;   // px
-    bool overlaps; // some pixel of it is inside in the other frame, too
+    bool overlaps; // some pixel of it is also inside in the other frame
 } Blob;
 
 /** The blobs of an outline by part number; entry 0 is unused. To be freed with g_free(). */
@@ -31,7 +31,7 @@ static Blob *measure_blobs(const FlOutline *outline, const FlConnectedParts *par
     return blobs;
 }
 
-/** The blob that another may have jumped from; NULL: none. */
+/** The blob that another may be after a jump; NULL: no such blob. */
 static const Blob *find_origin(const Blob *blob, const Blob *candidates, int n_parts,
                                float limit_px)
 {
@@ -48,7 +48,7 @@ static const Blob *find_origin(const Blob *blob, const Blob *candidates, int n_p
     return best;
 }
 
-/** Finds the origins of the parts that overlap nothing. */
+/** Finds the origins of the parts without overlap. */
 static bool trace_jumps(const FlOutline *now, const FlConnectedParts *parts, const Blob *blobs,
                         const FlOutline *other, float limit_px, FlTrace *trace, GError **error)
 {

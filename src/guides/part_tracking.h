@@ -7,11 +7,11 @@
 
 typedef enum FlTraceKind {
     FL_TRACE_LOST,     // no part of the other frame matches
-    FL_TRACE_OVERLAPS, // some pixel of it is inside there, too: its contour tells the motion
+    FL_TRACE_OVERLAPS, // a pixel of it is inside in both frames: its contour tells the motion
     FL_TRACE_JUMPS,    // it moved by more than its own size
 } FlTraceKind;
 
-/** How one part of a frame's shape relates to another frame. */
+/** The relation of one part of a frame's shape to another frame. */
 typedef struct FlTrace {
     FlTraceKind kind;
     float offset[2]; // of a jump: from the other frame's part to this one; px

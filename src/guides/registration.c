@@ -11,12 +11,12 @@
 #include <string.h>
 
 #define MOST_STEPS 12     // of Gauss and Newton
-#define CONVERGED_PX 1e-3 // a step that is shorter ends it
+#define CONVERGED_PX 1e-3 // a shorter step ends the search
 #define SOFT_PX 3.0       // distances beyond it count less
 #define FIRM 0.002        // ridge of translation and rotation: what cannot be seen stays 0
 #define STIFF 0.06        // of scale and shears
 #define UNSEEN 0.01       // of the largest eigenvalue: a mode that the outline does not show
-#define NOISE_PX 0.05     // mean distance below which nothing has moved
+#define NOISE_PX 0.05     // mean distance that counts as no motion
 #define BLUR_PX 0.7f      // of the distances before they are matched
 #define LEAST_POINTS 12   // of a contour
 #define LIMIT_SHARE 0.25f // of the larger side that a part may move
@@ -26,7 +26,7 @@
 typedef struct Point {
     double x, y, nx, ny;
     int px, py;
-    double d; // distance before, of where it comes from
+    double d; // distance at its source in the frame before
 } Point;
 
 typedef struct Work {
@@ -209,7 +209,7 @@ static bool improve(const Work *w, Map *map, const GArray *points, double *step)
     return true;
 }
 
-/** Finds the map from a start. Returns: the mean distance it leaves, HUGE_VAL if none. */
+/** Finds the map from a start. Returns: the mean distance that remains, HUGE_VAL without a map. */
 static double search(const Work *w, Map *map, GArray *points)
 {
     double step = HUGE_VAL;
@@ -219,7 +219,7 @@ static double search(const Work *w, Map *map, GArray *points)
     return measure(w, map, points);
 }
 
-/** Centre and area of what a part has below it in the frame before, all of it. */
+/** Centre and area of all parts of the frame before that a part overlaps. */
 static bool centre_before(const Work *w, int part, double c[3])
 {
     const FlConnectedParts *before = &w->parts_before;
@@ -285,7 +285,7 @@ static bool fill_part(const Work *w, int part, const Map *map, const GArray *poi
         double u[2], mode[FL_MODES][2], g[2];
         move(map, q->x, q->y, u, mode);
         const double d = sample(w, q->x - u[0], q->y - u[1], g);
-        if (g[0] * q->nx + g[1] * q->ny < 0) // faces the other way: this tells nothing
+        if (g[0] * q->nx + g[1] * q->ny < 0) // faces the other way: no measure of motion
             continue;
         const size_t p = (size_t)(q->py - box.y) * box.width + (q->px - box.x);
         cell[p] = FL_CELL_FIXED;
@@ -341,7 +341,7 @@ static bool fill_flow(Work *w, int part, GError **error)
 }
 
 /** A part that is nowhere over its past: it has come from there only if it looks the same. A speck
- * looks like any other, so that nothing is known of its motion. */
+ * looks like any other, so that its motion is unknown. */
 static bool register_jump(const Work *w, int part, GArray *points, GError **error)
 {
     Map map = map_of(points);

@@ -10,10 +10,10 @@
  * Each connected part that overlaps its past is moved as a whole (translation, rotation and, held
  * back, scale and shears) so that its contour lies where the distance to the contour before is
  * least; what is left of the normal motion is diffused inward. Motion that an outline does not
- * show, such as the turning of a disc, stays 0. A part for which that finds nothing has the flow of
- * fl_flow_construct(). One that overlaps nothing is laid over the part that it may have jumped from
- * (part_tracking.h); if their contours differ, or it is too small to tell, or there is none, its
- * motion is unknown: NAN.
+ * show, such as the turning of a disc, stays 0. A part for which that fails has the flow of
+ * fl_flow_construct(). One without overlap is laid over the part that it may have jumped from
+ * (part_tracking.h). Its motion is unknown, NAN, if there is no such part, if their contours differ
+ * or if it is too small to tell.
  *
  * Both outlines are of frames of the same size, that of `motion`. Returns: false with
  * FL_ERROR_NO_MEMORY set.

@@ -1,4 +1,4 @@
-/* Which parts of a mask rest while others move. */
+/* The parts of a mask that rest while others move. */
 #ifndef FLUIDY_GUIDES_RESTING_PARTS_H
 #define FLUIDY_GUIDES_RESTING_PARTS_H
 
@@ -9,7 +9,7 @@
 
 #define FL_REST_PX 8 // side of a square
 
-/** What there is of a mask in a square, now or in the frame before. */
+/** The state of a mask in a square, now or in the frame before. */
 enum { FL_SQUARE_TAKEN = 1, FL_SQUARE_CHANGES = 2 };
 
 /** The parts at rest, by squares of FL_REST_PX px. Parts are at least two squares apart, so that no
@@ -17,10 +17,10 @@ enum { FL_SQUARE_TAKEN = 1, FL_SQUARE_CHANGES = 2 };
 typedef struct FlRestingParts {
     int width, height; // of the frame, px
     int columns, rows;
-    bool *keeps; // by square: there is a part at rest in it, or beside it; NULL: none rests
+    bool *keeps; // by square: a part at rest is in or beside the square; NULL: no part rests
 } FlRestingParts;
 
-/** How many squares a side has. */
+/** The number of squares along a side. */
 static inline int fl_rest_squares(int px)
 {
     return (px + FL_REST_PX - 1) / FL_REST_PX;
@@ -35,8 +35,8 @@ bool fl_resting_parts_init(FlRestingParts *parts, int width, int height, const u
 
 void fl_resting_parts_clear(FlRestingParts *parts);
 
-/** A stretch of row y from column x on, all of parts at rest or none. *end: its end. Returns:
- * whether they keep it. */
+/** A stretch of row y from column x on, all inside squares that parts at rest keep, or all outside.
+ * *end: its end. Returns: true if the stretch is kept. */
 bool fl_resting_parts_stretch(const FlRestingParts *parts, int x, int y, int *end);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlRestingParts, fl_resting_parts_clear)

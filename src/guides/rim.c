@@ -61,7 +61,7 @@ static float depth_of(float distance, float border_px, float u, float others)
     return MAX(distance, MIN(depth, border_px));
 }
 
-/** What is needed of a part of the frame. */
+/** The data of a part of the frame. */
 typedef struct Part {
     FlRect box;
     float *distance;      // to the contour of all that are together
@@ -95,9 +95,9 @@ static int surround_radius(float border_px)
     return MAX((int)(border_px + 0.5f), 1);
 }
 
-/** Everything that a pixel's half width depends on: a disc that holds it, and the disc's contour.
- * Where nothing is like the shape, both are in it: then what surrounds the last pixels is farther.
- */
+/** The box of all pixels that a half width depends on: a disc that holds the pixel, and the disc's
+ * contour. Without shapes like this one, both lie inside the shape, and the surroundings of the
+ * last pixels reach farther. */
 static FlRect part_box(const FlRimShape *shape, float border_px)
 {
     const int disc = fl_rim_reach(border_px);

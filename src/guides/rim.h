@@ -1,4 +1,4 @@
-/* Depth as the paint takes it: a rim as wide as the shape allows. */
+/* The depth for the synthesis: a rim as wide as the shape allows. */
 #ifndef FLUIDY_GUIDES_RIM_H
 #define FLUIDY_GUIDES_RIM_H
 
@@ -14,16 +14,16 @@ typedef struct FlRimShape {
     const uint8_t *mask;     // its coverage
     const float *distance;   // to its contour, fl_distance()
     const uint8_t *together; // coverage of the mask and all shapes like it, between which there is
-                             // no rim; NULL: there is none like it
-    const uint8_t *seen;     // coverage of what is seen of them; NULL: nothing lies over them
+                             // no rim; NULL: no other shape is like this one
+    const uint8_t *seen;     // coverage of their visible parts; NULL: all are visible
     const uint8_t *shown;    // coverage of all shapes of the frame; NULL: there are no others
 } FlRimShape;
 
-/** How far from a pixel its depth may depend on the shapes, px. */
+/** The distance from a pixel up to which its depth may depend on the shapes, px. */
 int fl_rim_reach(float border_px);
 
 /**
- * How deep each pixel of the shape lies for the paint, px, below border_px or as `distance` says.
+ * The depth of each pixel of the shape for the paint, px: below border_px, or equal to `distance`.
  *
  * Where the shape is at least two borders wide this is the distance to the contour. A narrower part
  * gets a narrower rim with core paint amid it, and one that is hardly there gets none: it is

@@ -14,7 +14,7 @@ typedef struct Vector {
 
 #define CARRY_ONE 1024
 
-/* What is the same for all pixels of a frame. */
+/* Values shared by all pixels of a frame. */
 typedef struct Plan {
     const FlCarry *input;
     int carry;            // of the motion, CARRY_ONE is all
@@ -25,10 +25,10 @@ typedef struct Plan {
 #define ROUND_BITS 24 // a place of 1/16 px in FL_MOTION_ONE * 16384 a px
 #define ROUND_ONE (1 << ROUND_BITS)
 
-/* What is added in frame n before rounding down, 0 … ROUND_ONE - 1: multiples of an irrational
- * number, whose means of any stretch are near 1/2 and err to both sides, so that rounding does not
- * drift. Over all turns, 300 frames end 0.2 steps off on average and 1.7 at most; with Van der
- * Corput's numbers, whose means are never above 1/2, 1.2 and 2.8. */
+/* The offset that frame n adds before rounding down, 0 … ROUND_ONE - 1. Offsets are multiples of an
+ * irrational number, whose means of any stretch are near 1/2 and err to both sides, so that
+ * rounding does not drift. Over all turns, 300 frames end 0.2 steps off on average and 1.7 at most;
+ * with Van der Corput's numbers, whose means are never above 1/2, 1.2 and 2.8. */
 static int32_t rounding(int n, uint32_t irrational)
 {
     return (int32_t)((uint32_t)n * irrational >> (32 - ROUND_BITS));
@@ -98,7 +98,7 @@ static float length_of_flow(const FlGuides *guides, size_t pixel)
     return sqrtf(u * u + v * v);
 }
 
-/* Where the paint of a match is from its pixel, in FL_MOTION_ONE a px. */
+/* The offset from a match's pixel to its paint, FL_MOTION_ONE per px. */
 static Vector off_of(FlMatch m)
 {
     const int x = ((m.off & 15) ^ 8) - 8, y = ((m.off >> 4) ^ 8) - 8;
@@ -117,17 +117,18 @@ static int32_t longer_side(Vector v)
     return MAX(abs(v.x), abs(v.y));
 }
 
-/* A pixel of the field before, relative to where another one comes from. */
+/* A pixel of the previous field, near the source position of a pixel of this field. */
 typedef struct Origin {
     int x, y;      // of the field
     Vector rest;   // from it to that place
     Vector off;    // from that place to its paint
-    FlMatch match; // none: there is no paint near
+    FlMatch match; // FL_NO_MATCH without paint near
 } Origin;
 
-/* The paint that is nearest to where a pixel comes from; `back` goes there from the pixel, which is
- * one of the field before. Were it always that of the nearest pixel, the borders between pieces of
- * the exemplar would move by whole pixels, and not with what they enclose. */
+/* The paint nearest to the source position of pixel (x, y); `back` is the vector from the pixel to
+ * that position. Coordinates are those of the previous field. Taking the paint of the nearest pixel
+ * instead would move the borders between pieces of the exemplar by whole pixels, out of step with
+ * the pieces. */
 static Origin nearest_paint(const FlNnf *before, int x, int y, Vector back)
 {
     static const int8_t around[9][2] = {{0, 0},   {0, -1}, {-1, 0}, {1, 0}, {0, 1},
@@ -173,7 +174,7 @@ static void arrive(const Plan *plan, const FlNnf *before, FlRect from, int x, in
         const Vector k = split(plan, pixel, &out->speed[p]);
         origin = nearest_paint(before, x - from.x, y - from.y, (Vector){-k.x, -k.y});
     } else if (inside ||
-               !guides->has_motion) { // what was left behind must not vote beside the rest
+               !guides->has_motion) { // paint that was left behind must not vote beside the rest
         origin = same_place(before, x - from.x, y - from.y);
     }
     FlMatch m = origin.match;

@@ -14,10 +14,10 @@
 #define FALL 0.154f     // 6 frames
 #define FALL_LEFT 0.36f // 2.25 frames: of an edge that recedes
 #define LEAST_STEP 2    // of FL_WET, so that it ends
-#define PALE 0.45f      // how much less dense fresh paint is
+#define PALE 0.45f      // share of its density that fresh paint lacks
 #define DRY_AT 0.35f    // wetness up to which paint is as dense as it gets,
 #define FRESH_AT 0.95f  // and from which on it is fresh
-#define GATHERS 0.45f   // how much denser the rim of an edge that recedes is
+#define GATHERS 0.45f   // added density at the rim of a receding edge
 #define RIM 7.0f        // units: how wide it is
 
 static float smoothstep(float low, float high, float v)
@@ -26,10 +26,10 @@ static float smoothstep(float low, float high, float v)
     return t * t * (3 - 2 * t);
 }
 
-/* What happens at a pixel. */
+/* The motion of contour and paint at a pixel. */
 typedef struct Place {
     float band;        // 1 at the contour, 0 inside
-    float lead, trail; // how much it advances and recedes
+    float lead, trail; // degree to which the contour advances and recedes
     float speed;       // of the paint, units
 } Place;
 
@@ -48,7 +48,7 @@ static float edge_of(float units)
     return units > STILL ? (1 - expf(-units / FULL)) * smoothstep(STILL, SURE, units) : 0;
 }
 
-/* In a frame that nothing was before the flow tells of motion. */
+/* In a first frame the flow stands for the motion. */
 static Place place_of(const FlDrying *drying, size_t p, int x, int y, bool first)
 {
     const FlGuides *guides = drying->guides;
@@ -71,7 +71,7 @@ static Place place_of(const FlDrying *drying, size_t p, int x, int y, bool first
                    .speed = speed / unit};
 }
 
-/* What the wetness tends to, 0 … 1. */
+/* The limit that the wetness approaches, 0 … 1. */
 static float tends_to(const Place *place)
 {
     const float inside = place->speed > 0 ? MOVING * (1 - expf(-place->speed / FAST)) : 0;
@@ -122,7 +122,7 @@ bool fl_drying_step(const FlDrying *drying, FlRect rect, const FlCarried *carrie
     return dries;
 }
 
-/* ---- what it looks like ---------------------------------------------------------------------- */
+/* ---- appearance ------------------------------------------------------------------------------ */
 
 static bool shows(const FlExemplarLevel *level, FlMatch m, int segment)
 {

@@ -4,7 +4,7 @@
 
 #include "synth/carry.h"
 
-/** How paint dries in a frame. */
+/** The input of a frame's drying. */
 typedef struct FlDrying {
     const FlGuides *guides; // of the frame
     float unit_px;          // 1/480 of the page's larger side
@@ -14,27 +14,28 @@ typedef struct FlDrying {
 
 #define FL_TONE_ONE 128
 
-/** How wet a pixel of guides is where nothing moves. */
+/** The wetness of a pixel of guides at rest. */
 int fl_wet_at_rest(const FlGuides *guides, size_t pixel, float unit_px);
 
 /**
- * The wetness of all pixels of a rectangle, which come from the frame before as `carried` has them;
- * NULL: nothing was before, and paint is as wet as it would be had it moved so for long.
+ * Computes the wetness of all pixels of a rectangle. `carried` holds the pixels as they come from
+ * the previous frame; NULL in a first frame, whose paint is as wet as after a long time of this
+ * motion.
  *
  * Inside, paint is wetter the faster it moves; near the contour it is fresh where that advances and
  * dry where it recedes. It gets wet within two frames, dries within 36, and starts fresh where it
- * is new. wet: of the frame, 0 elsewhere. tone: of rect, by which its density is multiplied,
- * FL_TONE_ONE is 1: what is fresh is pale, and pigment gathers where the contour recedes.
+ * is new. wet: of the frame, 0 elsewhere. tone: of rect, the factor of its density, FL_TONE_ONE is
+ * 1: fresh paint is pale, and pigment gathers where the contour recedes.
  *
- * Returns: whether any is not as wet as it is at rest.
+ * Returns: true if the wetness of a pixel differs from its wetness at rest.
  */
 bool fl_drying_step(const FlDrying *drying, FlRect rect, const FlCarried *carried, uint8_t *wet,
                     uint8_t *tone);
 
 /**
- * Moves carried matches on, or back, by the frames of the exemplar between what they were and
- * `wet`, in their place; beside a rim, which moves there, at their depth. They stop where there is
- * no paint of their segment.
+ * Moves carried matches forward or back in the exemplar's time, from their wetness to `wet`. They
+ * keep their place; beside a rim, which moves in the exemplar, they keep their depth. They stop
+ * where the exemplar has no paint of their segment.
  */
 void fl_drying_show(const FlDrying *drying, FlRect rect, const uint8_t *wet,
                     const FlExemplar *exemplar, FlCarried *carried);

@@ -1,6 +1,6 @@
 #include "synth/energy.h"
 
-/* All weights off, rotation too: without it a turned patch costs nothing. */
+/* Params with all weights 0 and rotation off: with rotation off, a turned patch adds no cost. */
 static FlParams no_weights(const FlParams *params)
 {
     FlParams none = *params;

@@ -7,8 +7,8 @@
 #include "synth/nnf.h"
 
 /**
- * The colours of a style in twice the size of an exemplar's level 0, in the window of that. style:
- * the one whose half, fl_style_halve(), the exemplar was made of.
+ * The colours of a style at twice the size of an exemplar's level 0, in the exemplar's window.
+ * style: the full-size style; the exemplar was made of its half, fl_style_halve().
  *
  * Returns: to be freed with fl_enlargement_free(); NULL with FL_ERROR_NO_MEMORY or FL_ERROR_OUTPUT.
  */
@@ -21,11 +21,10 @@ const FlExemplarLevel *fl_enlargement_level(const FlEnlargement *enlargement);
 /** An estimate of its bytes. */
 double fl_enlargement_bytes(const FlEnlargement *enlargement);
 
-/** Follows the exemplar's window, as fl_exemplar_seek() has moved it. FL_ERROR_INPUT,
- * FL_ERROR_NO_MEMORY. */
+/** Moves to the exemplar's window after fl_exemplar_seek(). FL_ERROR_INPUT, FL_ERROR_NO_MEMORY. */
 bool fl_enlargement_seek(FlEnlargement *enlargement, const FlExemplar *exemplar, GError **error);
 
-/** Where pictures are made. */
+/** The picture that enlarged votes are written to. */
 typedef struct FlEnlarged {
     const FlKernels *kernels;
     float sharpness;   // of votes, see fl_vote()

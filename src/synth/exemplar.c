@@ -140,8 +140,8 @@ static void release_frames(FlExemplar *exemplar, int t, int end)
 #define MARGIN 0.0625         // likewise: less is no paint yet
 enum { DEEPEST_MARGIN = 64 }; // px
 
-/* How far paint is from the paper, channels summed, by its depth in whole px and below the border.
- */
+/* The colour difference of paint and paper, summed over channels, by the paint's depth in whole px
+ * and below the border. */
 typedef struct Contrast {
     uint64_t sum, n;
     uint64_t sum_at[DEEPEST_MARGIN], n_at[DEEPEST_MARGIN];
@@ -183,7 +183,7 @@ static float margin_of(const Contrast *contrast, float border_px)
 
 #define PACKERS 4 // threads at most: each takes the planes of a frame
 
-/* What the guides of all frames say. */
+/* Statistics of the guides of all frames. */
 typedef struct Measured {
     float most; // extent
     Contrast contrast;
@@ -389,7 +389,7 @@ static bool halve_margin(FlExemplar *exemplar, const FlStyle *full, const FlPara
     return true;
 }
 
-/* full: the style whose half `style` is; NULL: it is none. */
+/* full: the full-size style if `style` is its half, else NULL. */
 static FlExemplar *make_exemplar(const FlStyle *style, const FlStyle *full, const FlParams *params,
                                  GError **error)
 {

@@ -41,13 +41,13 @@ typedef struct FlExemplar {
     FlExemplarLevel level[FL_MAX_LEVELS];
     bool separate; // border and interior are matched separately
     float border_px;
-    float margin_px;  // how deep the paper is bare inside the masks: depth counts from there
+    float margin_px;  // width of the bare paper inside the masks; depth counts from its end
     float bare;       // sum of channels, 0 … 3: nearer to the paper is no paint of the interior
     float ext_scale;  // 1 / the largest extent, 1/px
     float smoothness; // of the style
-    float wets;       // how much paler its fresh paint is, 0 … 1; 0: it is no wet paint
+    float wets;       // paleness of its fresh paint, 0 … 1; 0: not a wet paint
     uint8_t paper[3];
-    bool cut_out; // as FlStyle's: the mask is alpha, and colours are over the paper by it
+    bool cut_out; // as FlStyle's: the mask is the alpha of colours over the paper
     // Level 0, n_frames * height * width:
     float *distance, *ext_plus, *ext_minus; // px; like the levels, in memory in the window only
     uint8_t *mask;
@@ -56,11 +56,11 @@ typedef struct FlExemplar {
 } FlExemplar;
 
 /**
- * Packs a style. It has as many levels as its size allows
- * [F21 §3.6], fewer where nothing would be left of its mask.
+ * Packs a style. It has as many levels as its size allows [F21 §3.6], fewer if its mask would
+ * vanish on the coarsest.
  *
- * Returns: to be freed with fl_exemplar_free(); NULL with FL_ERROR_STYLE (it has no paint)
- * or FL_ERROR_NO_MEMORY set.
+ * Returns: to be freed with fl_exemplar_free(); NULL with FL_ERROR_STYLE (it has no paint) or
+ * FL_ERROR_NO_MEMORY set.
  */
 FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error);
 
@@ -86,7 +86,7 @@ bool fl_exemplar_seek(FlExemplar *exemplar, int first, GError **error);
 bool fl_shape_guide(const FlGuides *guides, const FlParams *params, float border_px, float *shape,
                     GError **error);
 
-/** Whether that is the depth, as the papers' guides are not. */
+/** True if the shape guide is the depth; the papers' shape guides are not. */
 static inline bool fl_knows_depth(const FlParams *params)
 {
     return !params->shape_ramp && params->shape_edge > 0;
@@ -117,8 +117,8 @@ static inline FlSegment fl_segment_of(bool inside, float distance, float border_
 
 #define FL_WET 255 // of paint that is as wet as can be
 
-/** How fresh paint of some wetness is: that of the first frame that can be searched is FL_WET, that
- * of the last 0. Most of a recording passes while paint is wettest. */
+/** The freshness of paint of some wetness: FL_WET in the first frame that can be searched, 0 in the
+ * last. Most of a recording passes while paint is wettest. */
 static inline int fl_freshness(int wet)
 {
     return wet * wet / FL_WET;
@@ -134,7 +134,7 @@ static inline int fl_freshness_of_frame(const FlExemplarLevel *level, int t)
     return FL_WET - (t - level->first) * FL_WET / MAX(level->window - 1, 1);
 }
 
-/** Whether a frame can be searched. */
+/** True if a frame can be searched. */
 static inline bool fl_exemplar_has(const FlExemplarLevel *level, int t)
 {
     return t >= level->first && t < level->first + level->window;

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Whether a pixel of the interior has hardly any paint. Such are the ends of deep dents in a ragged
- * rim; amid a target's paint they would be holes, which spread where shapes merge. */
+/* True if a pixel of the interior has hardly any paint. These pixels occur at the ends of deep
+ * dents in a ragged rim. Copied into a target they make holes, which spread when shapes merge. */
 static bool is_bare(const FlPyramid *pyramid, size_t p, const FlExemplar *exemplar)
 {
     float apart = 0;

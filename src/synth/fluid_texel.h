@@ -1,5 +1,5 @@
-/* What LazyFluids compares: exemplar and target pixel by pixel, packed for the retrieval [L15 §4].
- */
+/* The texels that LazyFluids compares: pixels of exemplar and target, packed for the retrieval [L15
+ * §4]. */
 #ifndef FLUIDY_SYNTH_FLUID_TEXEL_H
 #define FLUIDY_SYNTH_FLUID_TEXEL_H
 

@@ -1,4 +1,4 @@
-/* What a frame is synthesised from, as pictures that other programs of guided synthesis read. */
+/* The input of a frame's synthesis, as pictures that other programs of guided synthesis read. */
 #ifndef FLUIDY_SYNTH_GUIDE_PAIRS_H
 #define FLUIDY_SYNTH_GUIDE_PAIRS_H
 
@@ -17,10 +17,10 @@ typedef struct FlGuidePair {
 
 #define FL_GUIDE_PAIRS 8 // of a frame at most
 
-/** Zeroed: nothing. */
+/** Zeroed: empty. */
 typedef struct FlGuidePairs {
     int source_width, source_height, width, height; // of exemplar and target, px
-    int style_channels;                             // 3: sRGB; 4: straight alpha, too
+    int style_channels;                             // 3: sRGB; 4: sRGB and straight alpha
     float style_weight;                             // as a pair's
     uint8_t *style;                                 // the exemplar's frame
     int n;

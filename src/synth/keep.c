@@ -4,13 +4,13 @@
 #include "synth/rest.h"
 #include <stdlib.h>
 
-/* How far the shape guide of a patch may be from that of the exemplar's, root mean square. A rim
- * that is 2 px deeper than it was, of one that is 10 px wide, is beyond it. */
+/* Largest difference between the shape guides of a patch and its match, root mean square. A rim 10
+ * px wide that comes to lie 2 px deeper exceeds this. */
 #define FIT 0.1
 
 #define DEEPER 0.5f // borders by which it may come to lie deeper
 
-/* Whether the patch around a pixel lies as deep as that of its match. */
+/* True if the patch around a pixel lies as deep as the patch of its match. */
 static bool fits(const FlTargetLevel *target, int x, int y, FlMatch m, const FlExemplarLevel *level)
 {
     const FlTexel *centre = fl_exemplar_at(level, fl_match_x(m), fl_match_y(m), m.frame);
@@ -27,7 +27,7 @@ static bool fits(const FlTargetLevel *target, int x, int y, FlMatch m, const FlE
     return (double)sum <= FL_PATCH_PIXELS * (FIT * FL_ONE) * (FIT * FL_ONE);
 }
 
-/* Whether paint that was laid beside an edge has that edge no more: it would stay as a spoke. */
+/* True if paint that was laid beside an edge no longer has that edge: it would stay as a spoke. */
 static bool lay_beside_edge(float depth_px, int was, FlMatch m, const FlExemplar *exemplar)
 {
     const FlExemplarLevel *level = &exemplar->level[0];
@@ -39,7 +39,7 @@ static bool lay_beside_edge(float depth_px, int was, FlMatch m, const FlExemplar
            depth_px - (float)was / FL_REST_STEPS * FL_REST_DEEP * exemplar->border_px > 0.5f;
 }
 
-/* Whether a match is that of paint which covers the pixel. */
+/* True if the paint of a match covers the pixel. */
 static bool covers(FlMatch m)
 {
     const int x = ((m.off & 15) ^ 8) - 8, y = ((m.off >> 4) ^ 8) - 8;

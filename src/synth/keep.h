@@ -6,9 +6,9 @@
 
 /**
  * Marks the pixels of all levels whose carried match lies as deep in the exemplar as they lie in
- * the target. What was laid beside an edge that has gone on is laid again, as is what has got more
- * room than its match shows. It takes them out of what is searched: coarser levels, of which
- * nothing else is needed, are made around the others alone.
+ * the target. Paint that was laid beside an edge which has moved on is laid again, and so is paint
+ * with more room than its match shows. Marked pixels are not searched; coarser levels, which only
+ * the search needs, are made around the other pixels alone.
  *
  * carried: a field of level 0. FL_ERROR_NO_MEMORY.
  */

@@ -58,7 +58,7 @@ void fl_draw_candidates_c(const FlSearchWindows *windows, const uint16_t centre[
     }
 }
 
-/* How much of a match's use a cell so many cells away gets. */
+/* The share of a match's use that a cell so many cells away gets. */
 static int share(int apart)
 {
     return MAX(2 - abs(apart), 0);

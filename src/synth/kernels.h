@@ -65,7 +65,7 @@ typedef void (*FlPatchPair)(const FlTexel *centre, const int16_t *offsets,
 
 #define FL_MAX_CANDIDATES 64 // of the random search for one pixel
 
-/** Where random candidates are drawn from; frames count from the first that is searched. */
+/** The windows of random candidates; frames count from the first that is searched. */
 typedef struct FlSearchWindows {
     _Alignas(64) uint16_t reach[3][FL_MAX_CANDIDATES]; // from the centre: x, y (px), frames
     uint16_t size[3];                                  // of what is searched: x, y, frames
@@ -76,17 +76,17 @@ typedef struct FlSearchWindows {
 /** Random candidates; only the first n of the windows count. */
 typedef struct FlCandidates {
     _Alignas(64) uint16_t at[3][FL_MAX_CANDIDATES]; // x, y, frame
-    uint32_t pixel[FL_MAX_CANDIDATES]; // where in memory, from the first frame's first pixel
+    uint32_t pixel[FL_MAX_CANDIDATES]; // index in memory from the first frame's first pixel
 } FlCandidates;
 
 /** Draws a try from each window around a centre (x, y, frame); the key decides. */
 typedef void (*FlDrawCandidates)(const FlSearchWindows *windows, const uint16_t centre[3],
                                  uint32_t key, FlCandidates *candidates);
 
-/** What a try must pass before its patch is compared. */
+/** The tests that a try must pass before its patch is compared. */
 typedef struct FlCandidateFilter {
     const FlTexel *first; // the first frame's first pixel
-    uint8_t segment;      // a try's centre must be of it
+    uint8_t segment;      // the segment of a try's centre
     const int32_t *use;   // the occurrence map of the segment
     uint32_t step[3];     // of the map: cells from one column, row, slice to the next
     uint16_t factor[3];   // a place p, in x, y and time, is in cell (2p + 1) * factor >> 16
@@ -97,10 +97,10 @@ typedef struct FlCandidateFilter {
 } FlCandidateFilter;
 
 /**
- * The first n candidates that pass, a bit for each, and the uniformity term of those: the use of
- * their cell but for the pixel's own, which spreads over 27 cells as the tent does, times the
- * price. Places are below 32768. The candidates must come from the same version, which draws a few
- * more than n; others of the FL_MAX_CANDIDATES terms may be written.
+ * Filters the first n candidates. Returns: a bit for each that passes. uniformity: the terms of the
+ * candidates that pass, the price times the use of their cell without the pixel's own use, which
+ * the tent spreads over 27 cells. Places are below 32768. The candidates must come from the same
+ * version, which draws a few more than n; others of the FL_MAX_CANDIDATES terms may be written.
  */
 typedef uint64_t (*FlFilterCandidates)(const FlCandidates *candidates, int n,
                                        const FlCandidateFilter *filter, uint32_t *uniformity);
@@ -114,7 +114,7 @@ typedef void (*FlSplineSample)(const FlSplinePixel *first, size_t pitch, const i
                                const float *y, float value[4]);
 
 #define FL_SAME_PLACE 12 // 1/16 px: votes nearer than that mean the same place
-#define FL_VOTE_BIAS 64  // added to places, so that none is negative
+#define FL_VOTE_BIAS 64  // added to places, to keep them from being negative
 #define FL_VOTES 32      // numbers that are read of 25
 
 /** The FL_PATCH_PIXELS matches around a pixel, column by column; FL_VOTES can be read of each. */
@@ -124,7 +124,7 @@ typedef struct FlVoteMatches {
     const int16_t (*turn)[2]; // fl_turns of its rotation
 } FlVoteMatches;
 
-/** What votes are sampled from. */
+/** The source of the votes' samples. */
 typedef struct FlVoteSource {
     const FlSplinePixel *colour;       // pixel (-1, -1) of frame 0
     size_t pitch, frame_pixels;        // pixels from one row, frame to the next
@@ -132,11 +132,13 @@ typedef struct FlVoteSource {
     float weight[FL_PATCH_PIXELS + 1]; // of a cluster of so many votes
 } FlVoteSource;
 
-/** What the cosine and sine of a match's turn are multiplied by, and added, for the x and y of its
- * vote: where the middle is from there. [axis], in the order of FlVoteMatches, zeros at the end. */
+/** Factors of the cosine and sine of a match's turn. The sum of both products is the x or y of its
+ * vote, relative to the match: the offset to the middle. [axis], in the order of FlVoteMatches,
+ * zeros at the end. */
 extern const int16_t fl_vote_steps[2][FL_VOTES][2];
 
-/** The places that the patches over a pixel point to, in 1/16 px, in that order; frame -1: none. */
+/** The places that the patches over a pixel point to, in 1/16 px, in that order; frame -1: no
+ * match. */
 typedef struct FlVotes {
     _Alignas(64) uint16_t x[FL_VOTES];
     _Alignas(64) uint16_t y[FL_VOTES];
@@ -152,7 +154,7 @@ static inline int fl_vote_leader(uint32_t left)
     return __builtin_ctz(left & row);
 }
 
-/** Votes that agree on a place: the first, and the sum of the others' differences from it. */
+/** Votes that agree on a place: the first, and the sum of (other - first) over the others. */
 typedef struct FlVoteCluster {
     int x, y, frame;
     int sum_x, sum_y;
@@ -175,13 +177,14 @@ typedef bool (*FlVote)(const FlVoteMatches *covering, const FlVoteSource *voted,
 typedef bool (*FlVoteDoubled)(const FlVoteMatches *covering, const FlVoteSource *voted,
                               float colour[4][4]);
 
-/** Of the FL_PATCH_PIXELS votes around a pixel those next to it, in either order; and of child 0 or
- * 1 along an axis those that count twice, by lines of FL_PATCH and by places in them. */
+/** Bit masks of the FL_PATCH_PIXELS votes around a pixel: the votes next to it, in either order;
+ * and the votes that count twice for child 0 or 1 along an axis, by lines of FL_PATCH and by places
+ * in these lines. */
 #define FL_VOTES_BESIDE 0x739c0u
 #define FL_LINES_TWICE(child) (0x7fe0u << (FL_PATCH * (child)))
 #define FL_PLACES_TWICE(child) (0x6318c6u << (child))
 
-/** How many votes of twice the size those of a cluster are, for a child. */
+/** The number of votes at twice the size that a cluster's votes make for a child. */
 static inline int fl_votes_doubled(uint32_t votes, uint32_t lines_twice, uint32_t places_twice)
 {
     return __builtin_popcount(votes) + __builtin_popcount(votes & lines_twice) +
@@ -194,9 +197,9 @@ static inline int fl_votes_doubled(uint32_t votes, uint32_t lines_twice, uint32_
 /** NNF(q): the centre of the source patch in 1/16 px of its level, its frame, its rotation. */
 typedef struct FlMatch {
     uint16_t x_16, y_16;
-    int16_t frame; // FL_NO_MATCH: none
+    int16_t frame; // FL_NO_MATCH: no match
     uint8_t theta; // target offset o is source offset R(-theta) o
-    uint8_t off;   // where its paint is from the pixel: x + 16 y, each -8 … 7 of FL_OFF_ONE a px
+    uint8_t off;   // from the pixel to its paint: x + 16 y, each -8 … 7 of FL_OFF_ONE a px
 } FlMatch;
 
 #define FL_NO_MATCH -1

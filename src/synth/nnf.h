@@ -23,10 +23,11 @@ static inline int fl_match_y(FlMatch m)
     return (m.y_16 + 8) >> 4;
 }
 
-/** Whether all matches lie in a level; those of bytes that need not be trusted may not. */
+/** True if all matches lie in a level; use it to check fields that are loaded. */
 bool fl_nnf_fits(const FlNnf *nnf, const FlExemplarLevel *level);
 
-/** A match moved by a target offset, as if both pixels had the same transformation; may be none. */
+/** A match moved by a target offset, as if both pixels had the same transformation; may be
+ * FL_NO_MATCH. */
 static inline FlMatch fl_match_moved(FlMatch m, int dx, int dy, const FlExemplarLevel *level)
 {
     int sx, sy;
@@ -40,8 +41,8 @@ static inline FlMatch fl_match_moved(FlMatch m, int dx, int dy, const FlExemplar
 
 /**
  * Makes a field valid for a level: each match whose centre is outside its segment goes to the
- * nearest valid pixel of its frame (within 12 px), else, or where there is none, to a random one.
- * Beside the target's blocks there must be none.
+ * nearest valid pixel of its frame (within 12 px), else to a random one. Missing matches become
+ * random ones. Beside the target's blocks there must be no matches.
  */
 void fl_nnf_repair(FlNnf *nnf, const FlExemplarLevel *level, const FlTargetLevel *target,
                    bool rotate, uint64_t key);
@@ -51,12 +52,12 @@ void fl_nnf_repair(FlNnf *nnf, const FlExemplarLevel *level, const FlTargetLevel
 void fl_nnf_upscale(const FlNnf *coarse, const FlExemplarLevel *fine_level,
                     const FlKernels *kernels, const FlBlocks *blocks, FlNnf *fine);
 
-/** The match of a pixel of level l in level 0: its place there, as near as can be. */
+/** Converts the match of a pixel of level l to level 0, at the nearest possible place. */
 FlMatch fl_match_enlarged(FlMatch match, int l, const FlExemplarLevel *full);
 
 /**
  * The level-0 field at a coarser level: the mode of the inversely transformed matches in each
- * window of 2^l pixels [F21 §3.6, fig. 7]; none where the window has none.
+ * window of 2^l pixels [F21 §3.6, fig. 7]; FL_NO_MATCH for a window without matches.
  */
 void fl_nnf_downscale(const FlNnf *full, int l, const FlExemplarLevel *level, FlNnf *coarse);
 

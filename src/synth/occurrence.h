@@ -1,14 +1,14 @@
-/* How often each part of the exemplar is in use: the uniformity term [F21 §3.5]. */
+/* The use of each part of the exemplar: the uniformity term [F21 §3.5]. */
 #ifndef FLUIDY_SYNTH_OCCURRENCE_H
 #define FLUIDY_SYNTH_OCCURRENCE_H
 
 #include "synth/nnf.h"
 
 /*
- * The paper's map Omega* counts, for every exemplar pixel, the cuboids of n x n x (2r+1) pixels
- * that cover it, and a patch sums the map over its own n x n pixels: together, matches are counted
- * under a tent about 2n wide and 4r long. We count matches in cells of 3 x 3 pixels and r+1 frames
- * and filter the counts with [1 2 1] along each axis, which is that tent to within a cell. Then a
+ * The paper's map Omega* counts the cuboids of n x n x (2r+1) pixels that cover each exemplar
+ * pixel, and a patch sums the map over its own n x n pixels: together, matches are counted under a
+ * tent about 2n wide and 4r long. We count matches in cells of 3 x 3 pixels and r+1 frames and
+ * filter the counts with [1 2 1] along each axis, which is that tent to within a cell. Then a
  * changed match costs two additions instead of 25 (2r+1), so that the map can be refreshed sixteen
  * times per sweep: with a stale map, whole areas leave the same patch together.
  */
@@ -40,7 +40,7 @@ bool fl_occurrence_init(FlOccurrence *map, const FlExemplarLevel *level,
                         const FlCostScale *scale, GError **error);
 void fl_occurrence_clear(FlOccurrence *map);
 
-/** Counts a whole field, from nothing, and refreshes. */
+/** Counts a whole field anew, and refreshes. */
 void fl_occurrence_count(FlOccurrence *map, const FlNnf *nnf, const FlTargetLevel *target);
 
 /** Moves one match. Threads may do so at the same time: additions have no order. */

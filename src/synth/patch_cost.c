@@ -1,6 +1,6 @@
 #include "synth/patch_cost.h"
 
-/* Whether the rotated source flow opposes the target's: the two extents then swap [F21 §3.3]. */
+/* True if the rotated source flow opposes the target's: the two extents then swap [F21 §3.3]. */
 static bool opposes(uint8_t turn)
 {
     return turn > 64 && turn < 192;

@@ -1,10 +1,10 @@
-/* What a match costs: the terms of the energy that a patch has by itself [F21 eq. 2]. */
+/* The cost of a match: the terms of the energy that a patch has by itself [F21 eq. 2]. */
 #ifndef FLUIDY_SYNTH_PATCH_COST_H
 #define FLUIDY_SYNTH_PATCH_COST_H
 
 #include "synth/occurrence.h"
 
-/** The input and the field of a search on one level; nothing is owned. */
+/** The input and the field of a search on one level; all pointers are borrowed. */
 typedef struct FlSearch {
     const FlExemplarLevel *level;
     const FlTargetLevel *target;
@@ -16,11 +16,11 @@ typedef struct FlSearch {
     uint32_t *cost;       // width * height: cost of the match without uniformity and coherence
     const FlNnf *carried; // the last field as the drawing has carried it here; NULL: it does not
     FlOccurrence *map;
-    uint32_t settled; // a match of less cost is left to its neighbours after a first look around it
-    int near_px;      // how far that look goes; 0: none
+    uint32_t settled;   // cheaper matches try only their neighbours' after a first look around
+    int near_px;        // radius of that look; 0: no look
     int propagate_from; // sweeps from this one on try no random matches; 0: all sweeps do
     uint64_t key;       // of the random search
-    // width * height, of the search: 1 + the last sweep in which a match changed, 0: in none. Where
+    // width * height, of the search: 1 + the last sweep in which a match changed, 0: never. Where
     // no neighbour has changed since a visit, the next does not try theirs again. NULL: it does.
     uint8_t *changed;
 } FlSearch;
@@ -53,21 +53,22 @@ static inline uint32_t fl_age_cost(const FlSearch *search, size_t pixel, int fra
 uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match);
 
 /**
- * What a match costs more that does not continue the one carried to its pixel; 0 where none was.
+ * The extra cost of a match that does not continue the match carried to its pixel; 0 without a
+ * carried match.
  *
  * Smooth patches fit anything a little, fine ones only their own like. Carried paint keeps its
  * frame of the exemplar, so what a search loses to smooth patches would not come back.
  */
 uint32_t fl_leaving_cost(const FlSearch *search, size_t pixel);
 
-/** Whether two matches are in the same frame of the exemplar, within 3/4 px. */
+/** True if two matches are in the same frame of the exemplar, within 3/4 px. */
 static inline bool fl_match_same_place(FlMatch a, FlMatch b)
 {
     return a.frame == b.frame && abs(a.x_16 - b.x_16) < FL_SAME_PLACE &&
            abs(a.y_16 - b.y_16) < FL_SAME_PLACE;
 }
 
-/** Whether two matches show the same piece of the exemplar: same place, same rotation. */
+/** True if two matches show the same piece of the exemplar: same place, same rotation. */
 static inline bool fl_match_continues(FlMatch a, FlMatch b)
 {
     return fl_match_same_place(a, b) && fl_angle_distance((uint8_t)(a.theta - b.theta)) < 8;
@@ -75,7 +76,8 @@ static inline bool fl_match_continues(FlMatch a, FlMatch b)
 
 #define FL_NEIGHBOURS 4
 
-/** Where the matches left, above, right and below continue at a pixel. Returns their number. */
+/** The matches that continue the left, upper, right and lower neighbours' at a pixel. Returns:
+ * their number. */
 int fl_matches_beside(const FlSearch *search, int x, int y, FlMatch expected[FL_NEIGHBOURS]);
 
 /** The mean of search->cost over the pixels that have a match; 0 without any. */

@@ -80,7 +80,7 @@ static bool add_temporal(const Sides *sides, float weight, FlGuidePairs *pairs, 
                 pair->target[3 * to + c] = fl_guide_byte(level->temporal[3 * from + c]);
         }
     if (!fl_guide_fill(pair->target, 3, counts, pairs->width, pairs->height))
-        fl_guide_pairs_drop(pairs, 1); // nothing was carried
+        fl_guide_pairs_drop(pairs, 1); // no match was carried
     return true;
 }
 

@@ -20,7 +20,7 @@ void fl_rest_shape(const FlGuides *guides, const FlRestRule *rule, uint8_t *shap
                 shape_at(guides, p, rule->border_px);
 }
 
-/* Whether a pixel has another shape than in the last frame, dries or moves. */
+/* True if a pixel has another shape than in the last frame, dries or moves. */
 static bool stirs(const FlGuides *guides, size_t p, uint8_t last_shape, uint8_t last_wet,
                   const FlRestRule *rule)
 {

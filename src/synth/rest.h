@@ -8,7 +8,7 @@
 #define FL_REST_DEEP 2.5f // borders up to which the depth counts
 #define FL_REST_STEPS 127 // of that depth
 
-/** What rest is. */
+/** The definition of rest. */
 typedef struct FlRestRule {
     float border_px;
     float still;   // the fastest flow, px a frame
@@ -16,13 +16,14 @@ typedef struct FlRestRule {
 } FlRestRule;
 
 /**
- * Fills in what a region at rest is known by, of a frame that is `width` wide and where guides are
- * of it: its mask, and inside it the depth, which also depends on what moves beside it.
+ * Writes the plane by which a region at rest is recognised, in a frame that is `width` wide, for
+ * the pixels of guides: the mask, and inside the mask the depth, which also depends on shapes that
+ * move beside the region.
  */
 void fl_rest_shape(const FlGuides *guides, const FlRestRule *rule, uint8_t *shape, int width);
 
-/** How deep a pixel inside was, FL_REST_STEPS are FL_REST_DEEP borders; at the very edge anything.
- */
+/** The depth of a pixel inside; FL_REST_STEPS are FL_REST_DEEP borders. Undefined at the very
+ * edge. */
 static inline int fl_rest_depth(uint8_t shape)
 {
     return shape ^ 255;
@@ -31,9 +32,10 @@ static inline int fl_rest_depth(uint8_t shape)
 /**
  * last_wet may be NULL where paint does not dry.
  *
- * Whether a region rests: its shape is that of the last frame, which fl_rest_shape() filled in, its
- * paint was as wet as at rest, and no flow inside is faster than the rule has it. A motion of the
- * drawing that is known is no rest, however slow it is, since it is seen after some frames.
+ * Returns: true if a region rests: its shape is that of the last frame, which fl_rest_shape()
+ * filled in, its paint was as wet as at rest, and no flow inside is faster than rule->still. A
+ * motion of the drawing that is known is no rest, however slow it is, since it is seen after some
+ * frames.
  */
 bool fl_rests(const FlGuides *guides, const FlRestRule *rule, const uint8_t *last_shape,
               const uint8_t *last_wet);

@@ -17,8 +17,8 @@ const int16_t (*fl_turns)[2] = turns;
 static FlOffset child_moves[2][FL_ANGLES][2];
 const FlOffset (*fl_child_moves)[FL_ANGLES][2] = child_moves;
 
-/* The middle of a coarse pixel p is 2 p + 1/2 on the finer level, that of its child q is
- * R(-theta)(q mod 2 - 1/2) from there: twice that is rotated, then halved. */
+/* The middle of a coarse pixel p is 2 p + 1/2 on the finer level; the middle of its child q is
+ * R(-theta)(q mod 2 - 1/2) away. Twice that offset is rotated, then halved. */
 static void fill_child_moves(void)
 {
     for (int a = 0; a < FL_ANGLES; a++)

@@ -27,8 +27,8 @@ typedef struct FlOffset {
 } FlOffset;
 
 /**
- * From twice a match's place to that of a pixel of the next finer level, in 1/16 px of it, -8 … 24:
- * fl_child_moves[row & 1][theta][column & 1].
+ * The offset from twice a match's place to the place of a child pixel's match, in 1/16 px of the
+ * next finer level, -8 … 24: fl_child_moves[row & 1][theta][column & 1].
  */
 extern const FlOffset (*fl_child_moves)[FL_ANGLES][2];
 
@@ -50,7 +50,7 @@ static inline void fl_unrotate(uint8_t theta, int dx, int dy, int *sx_16, int *s
     fl_turn_back(fl_turns[theta], dx, dy, sx_16, sy_16);
 }
 
-/** As fl_child_moves has it, for the row of fl_turns of an angle. */
+/** Computes an entry of fl_child_moves. turn: the angle's row of fl_turns. */
 static inline FlOffset fl_child_move(const int16_t turn[2], int column, int row)
 {
     int dx, dy;
@@ -58,7 +58,7 @@ static inline FlOffset fl_child_move(const int16_t turn[2], int column, int row)
     return (FlOffset){(int16_t)(8 + dx / 2), (int16_t)(8 + dy / 2)};
 }
 
-/** How far an angle is from 0, in steps: 0 … 128. */
+/** The distance between an angle and 0, in steps: 0 … 128. */
 static inline int fl_angle_distance(uint8_t angle)
 {
     return angle < 128 ? angle : 256 - angle;

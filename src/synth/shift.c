@@ -53,7 +53,7 @@ static FlMatch boil_step(const FlExemplar *exemplar, FlMatch match, int step)
     return match;
 }
 
-/* Moves a match outside the window to the nearest frame in it; without paint there, the match is
+/* Moves a match outside the window to its nearest frame. A match without paint in that frame is
  * dropped. */
 static FlMatch moved_into_window(const FlExemplar *exemplar, FlMatch match)
 {

@@ -4,7 +4,7 @@
 
 #include "synth/nnf.h"
 
-/** What the target does between two frames: arrays of width * height of the field. */
+/** The target's motion between two frames: arrays of width * height of the field. */
 typedef struct FlTargetMotion {
     const float *speed;   // px from the field's frame to the next
     const uint8_t *angle; // its direction
@@ -12,7 +12,8 @@ typedef struct FlTargetMotion {
     int boil;             // … and boils: steps so many frames of the exemplar, -1 … 1
 } FlTargetMotion;
 
-/** Shifts a level-0 field; matches outside the exemplar's window are first moved into it. */
+/** Shifts a level-0 field; matches outside the exemplar's window first move to its nearest
+ * frame. */
 void fl_nnf_shift(FlNnf *nnf, const FlExemplar *exemplar, const FlTargetMotion *motion);
 
 /**
@@ -24,7 +25,7 @@ int fl_boil_step(float boil, int frame, int n_frames);
 
 #define FL_BOIL_TURN 12
 
-/** How far the last frame's matches are trusted [F21 §3.4]. */
+/** The limits of trust in the last frame's matches [F21 §3.4]. */
 typedef struct FlTemporalTrust {
     float lower_px, upper_px; // differences of depth: m_l, m_u
     float below_border;       // 0 … 1: how far all depths below the border are taken for the same

@@ -117,7 +117,7 @@ static bool dries(const FlSynth *synth)
     return fl_synth_dries(synth->exemplar, synth->params);
 }
 
-/* How wet the paint of the frame is, into *wet, and carried matches as wet as that. */
+/* Computes the wetness of the frame's paint, *wet, and moves carried matches to this wetness. */
 static bool dry(FlSynth *synth, const FlGuides *guides, FlRect rect, FlCarried *carried,
                 uint8_t **wet, bool *goes_on, GError **error)
 {
@@ -257,7 +257,7 @@ static bool remember_picture(FlSynth *synth, const uint8_t *rgb, GError **error)
     return true;
 }
 
-/* Whether a region at rest has its picture in the frame-th frame as well. */
+/* True if a region at rest keeps its picture in the frame-th frame. */
 static bool may_rest(const FlSynth *synth, int frame)
 {
     const FlParams *params = synth->params;
@@ -341,7 +341,7 @@ static bool paint_nothing(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, 
     return true;
 }
 
-/* Which parts rest, and whether any does not. */
+/* Finds the parts at rest. *moves: true if there are parts that do not rest. */
 static bool find_resting(const FlSynth *synth, const FlGuides *guides, FlRestingParts *resting,
                          bool *moves, GError **error)
 {

@@ -5,13 +5,13 @@
 #include "synth/guide_pairs.h"
 #include "synth/patchmatch.h"
 
-/** What happened on one level; energies are means per pixel in the paper's units. */
+/** Statistics of one level; energies are means per pixel in the paper's units. */
 typedef struct FlLevelStats {
     int width, height, pixels;
     int rounds;
     double energy_start, energy; // data terms of the field at the start and at the end
-    // The terms at the end. Together, the data terms exceed the energy by what the two colours that
-    // the search blends, the last vote and T_temp, differ by.
+    // The terms at the end. The sum of the data terms exceeds the energy by the
+    // difference of the two colours that the search blends: the last vote and T_temp.
     double texture, bound, ext, direction, temporal, uniformity, coherence;
     FlSearchCounts counts;
     double seconds;
@@ -23,8 +23,8 @@ typedef struct FlFrameStats {
     double seconds_target, seconds_temporal, seconds_search, seconds_vote;
 } FlFrameStats;
 
-/** How a frame was synthesised, for inspection: valid until the next frame. All of level 0 and
- * `rect`, in the size of the picture; matches point into frames of that size. */
+/** The synthesis of a frame, for inspection: valid until the next frame. All of level 0 and `rect`,
+ * in the size of the picture; matches point into frames of that size. */
 typedef struct FlSynthView {
     FlRect rect;
     const FlNnf *nnf;
@@ -44,12 +44,13 @@ typedef struct FlSynthSize {
     int frame_width, frame_height; // of the whole frames
 } FlSynthSize;
 
-/** The exemplar and params must outlive it. */
+/** The exemplar and params must outlive the synthesis. */
 FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
                       uint64_t seed);
 void fl_synth_free(FlSynth *synth); // NULL is fine
 
-/** Whether statistics hold energies, which take a fifth of a frame's time (no); else they are 0. */
+/** Switches the energies in the statistics on or off (default: off). They take a fifth of a frame's
+ * time; without them they are 0. */
 void fl_synth_measure(FlSynth *synth, bool energies);
 
 /**
@@ -66,13 +67,13 @@ void fl_synth_measure(FlSynth *synth, bool energies);
 bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error);
 
-/** The next frame where its guides are those of the frame before and nothing moves: it has the same
- * picture. Returns: false, and nothing has happened: it is to be painted. */
+/** Advances by a frame without motion that has the guides, and so the picture, of the frame before.
+ * Returns: false if the frame must be painted; the state is then unchanged. */
 bool fl_synth_rest(FlSynth *synth);
 
-#define FL_DRYING_FRAMES 36 // what has come to rest is dry by then
+#define FL_DRYING_FRAMES 36 // paint at rest is dry after these
 
-/** Whether paint shows how wet it is: where it is carried whole, which tells its age. */
+/** True if paint shows its wetness: only paint that is carried whole has a known age. */
 bool fl_synth_dries(const FlExemplar *exemplar, const FlParams *params);
 
 /**

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #define NEAR_PX 8 // on the finest level; around a match that has settled, on coarser levels
-#define FINEST_RANDOM_SWEEPS 3 // on the finest level; a later one gains nothing that is seen
+#define FINEST_RANDOM_SWEEPS 3 // on the finest level; later ones make no visible difference
 
 int fl_synth_finest_searched(const FlSynth *synth)
 {
@@ -19,7 +19,7 @@ int fl_synth_finest_searched(const FlSynth *synth)
 }
 
 /* The previous field in a level's size: `shifted`, or `down`, which is made. *previous stays NULL
- * where there is none. */
+ * without a previous field. */
 static bool previous_of_level(const FlSynth *synth, const FlNnf *shifted, int l, FlNnf *down,
                               const FlNnf **previous, GError **error)
 {
@@ -34,8 +34,8 @@ static bool previous_of_level(const FlSynth *synth, const FlNnf *shifted, int l,
     return true;
 }
 
-/* Half a carry trusts the middle of large shapes by an eighth, so that paint is renewed there;
- * where no motion is known nothing is carried. */
+/* Half a carry trusts the middle of large shapes by an eighth, which renews their paint; matches
+ * are not carried where the motion is unknown. */
 static FlTemporalTrust trust_of(const FlSynth *synth)
 {
     const FlParams *params = synth->params;
@@ -66,7 +66,7 @@ static bool make_temporal_level(FlSynth *synth, const FlNnf *shifted, int l, GEr
     return true;
 }
 
-/* Whether paint that fits as it has come is kept: not where every match shall be searched. */
+/* True if carried paint that fits is kept; false if every match shall be searched. */
 static bool keeps(const FlParams *params)
 {
     return params->settled > 0;
@@ -139,8 +139,8 @@ static void copy_blocks(const FlNnf *from, const FlBlocks *blocks, FlNnf *to)
     }
 }
 
-/* The field to start a level with: from the coarser level, which then may go, from the previous
- * frame, or random. */
+/* Initialises the field of a level: from the coarser level, which may then be freed, from the
+ * previous frame, or at random. */
 static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int l, int rounds,
                        const FlNnf *previous)
 {
@@ -221,7 +221,7 @@ static bool optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, in
     return true;
 }
 
-/* The energy of the field that the level ends with, and its terms. */
+/* The energy of the level's final field, and the terms of that energy. */
 static void end_statistics(FlSearch *search, FlTargetLevel *target, FlLevelStats *stats)
 {
     FlEnergy energy;
@@ -235,8 +235,8 @@ static void end_statistics(FlSearch *search, FlTargetLevel *target, FlLevelStats
     stats->uniformity = energy.uniformity, stats->coherence = energy.coherence;
 }
 
-/* Matches that are good as they are cost little time: random tries find next to nothing for them,
- * least of all where the field comes from the coarser level or the frame before. */
+/* Matches that are good as they are cost little time: random tries rarely improve them, least of
+ * all where the field comes from the coarser level or the frame before. */
 static void settle(FlSearch *search, int level, bool first, bool coarsest)
 {
     const float settled = search->params->settled;

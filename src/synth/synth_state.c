@@ -123,7 +123,7 @@ GBytes *fl_synth_state_later(GBytes *bytes, int frame)
     return g_bytes_new_take(copy, size);
 }
 
-/* Whether a rectangle has pixels, and all of them in the frame. */
+/* True if a rectangle is not empty and lies within the frame. */
 static bool fits(const Header *h, const FlSynthState *state)
 {
     const int width = state->width, height = state->height;

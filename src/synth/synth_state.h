@@ -1,4 +1,4 @@
-/* The state of a region between two frames, as bytes: a later render resumes from it. */
+/* The state of a region between two frames, as bytes, for a later render that resumes. */
 #ifndef FLUIDY_SYNTH_SYNTH_STATE_H
 #define FLUIDY_SYNTH_SYNTH_STATE_H
 
@@ -6,7 +6,7 @@
 
 #define FL_SYNTH_STATE_HEADER 28 /**< bytes before those that are packed */
 
-/** What the next frame of a region needs from those before it. */
+/** The state that the next frame of a region needs from the frames before. */
 typedef struct FlSynthState {
     int width, height;                 // of the frame
     int painted_width, painted_height; // of its picture: the same, or larger
@@ -16,7 +16,7 @@ typedef struct FlSynthState {
     FlNnf nnf;                         // its level-0 field, as large as rect
     uint8_t *mask;                     // fl_rest_shape() of the whole frame, width * height
     uint8_t *wet;                      // fl_drying_step() of the whole frame, width * height
-    bool dries;                        // whether that goes on at rest
+    bool dries;                        // true if drying goes on at rest
     uint8_t *rgb; // the picture of the whole frame, painted_width * painted_height * 3
 } FlSynthState;
 

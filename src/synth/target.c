@@ -179,7 +179,7 @@ static void count_segments(FlTargetLevel *level)
 
 #define STRIP_ROWS 128 // even
 
-/* What a target is made from. */
+/* The input of a target. */
 typedef struct Source {
     const FlGuides *guides;
     const FlParams *params;

@@ -1,4 +1,4 @@
-/* The target: one region of one frame on every level, as the search reads it. */
+/* The target: one region of one frame on every level, in the layout that the search reads. */
 #ifndef FLUIDY_SYNTH_TARGET_H
 #define FLUIDY_SYNTH_TARGET_H
 
@@ -22,9 +22,9 @@ typedef struct FlTargetLevel {
     FlTargetTexel *guide;
     FlTargetTexel rest;     // weights of the other channels, for every pixel
     float *colour;          // 3 per pixel, 0 … 1: the last vote
-    float *temporal;        // 3 per pixel: T_temp; NULL: nothing was before
+    float *temporal;        // 3 per pixel: T_temp; NULL in a first frame
     uint8_t *fresh;         // fl_freshness() of the paint; NULL: it does not matter
-    uint8_t *kept;          // whose matches stay as they were carried; NULL: none does
+    uint8_t *kept;          // pixels that keep their carried matches; NULL: no pixel
     float *temporal_weight; // m(q), 0 … 1; 0 where T_temp is undefined; NULL likewise
     float *distance;        // px of level 0
     int n_inside[FL_SEGMENTS];
@@ -35,13 +35,13 @@ typedef struct FlTargetLevel {
     int32_t around[FL_PATCH_PIXELS]; // fl_patch_offsets in pixels of this level
 } FlTargetLevel;
 
-/** Whether the match of a pixel is searched for. */
+/** True if the match of a pixel is searched. */
 static inline bool fl_target_searches(const FlTargetLevel *level, size_t pixel)
 {
     return level->segment[pixel] != FL_SEGMENT_OUTSIDE && !(level->kept && level->kept[pixel]);
 }
 
-/** How terms become integer costs: a squared colour difference of 1 costs FL_ONE² / w_max. */
+/** The scale of integer costs: a squared colour difference of 1 costs FL_ONE² / w_max. */
 typedef struct FlCostScale {
     float w_max;                   // the weight that is packed as 32767
     double unit;                   // cost of 1.0 in the paper's energy
@@ -66,15 +66,16 @@ bool fl_target_init(FlTarget *target, const FlGuides *guides, const FlParams *pa
 void fl_target_clear(FlTarget *target);
 void fl_target_level_clear(FlTargetLevel *level);
 
-/** How wet paint shall be, from a plane of the frame, which is `width` wide: extents then do not
- * count, for what is carried whole has no extent. FL_ERROR_NO_MEMORY. */
+/** Takes the wetness of the target's paint from a plane of the frame, which is `width` wide.
+ * Extents then do not count, since paint that is carried whole has no extent.
+ * FL_ERROR_NO_MEMORY. */
 bool fl_target_take_wetness(FlTarget *target, const uint8_t *wet, int width, GError **error);
 
-/** Takes the pixels that are kept out of what a level searches, and of what is made of it unless
- * `all` of that is needed. FL_ERROR_NO_MEMORY. */
+/** Excludes kept pixels from the search of a level and, unless `all` is set, from the pixels whose
+ * colours are made. FL_ERROR_NO_MEMORY. */
 bool fl_target_level_search(FlTargetLevel *level, bool all, GError **error);
 
-/** Frees the distances, which T_temp alone is made with. */
+/** Frees the distances, which only T_temp needs. */
 void fl_target_drop_distances(FlTarget *target);
 
 /** Makes room for T_temp and m in all levels, 0 all over. FL_ERROR_NO_MEMORY. */
@@ -88,12 +89,13 @@ void fl_target_temporal_pyramid(FlTarget *target, int from);
 void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostScale *scale,
                      float w_texture);
 
-/** The target around a pixel in the order of fl_patch_offsets, as the kernels read it. */
+/** The target around a pixel in the order of fl_patch_offsets, in the layout that the kernels
+ * read. */
 typedef struct FlTargetPatch {
     _Alignas(64) FlTargetTexel guide[FL_PATCH_PIXELS + 3];
 } FlTargetPatch;
 
-/** Pixels beyond the rectangle repeat the nearest one in it. */
+/** Gathers a patch; pixels beyond the rectangle repeat its nearest pixel. */
 void fl_target_gather(const FlTargetLevel *level, int x, int y, FlTargetPatch *patch);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlTarget, fl_target_clear)

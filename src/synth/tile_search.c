@@ -33,7 +33,7 @@ typedef struct PixelSearch {
     FlCandidates candidates;
     const FlTileSearch *tile_search;
     const FlSearch *search;
-    const FlSearchWindows *windows; // that random candidates are drawn from; NULL: none
+    const FlSearchWindows *windows; // windows of random candidates; NULL: no windows
     int x, y, sweep;
     size_t pixel;
     FlSegment segment;
@@ -44,10 +44,10 @@ typedef struct PixelSearch {
     uint32_t data;                   // fl_match_cost of best
     uint32_t own_uniformity;         // the term of `own`
     uint32_t total;                  // data with uniformity and coherence
-    FlMatch expected[FL_NEIGHBOURS]; // where the neighbours' matches continue
+    FlMatch expected[FL_NEIGHBOURS]; // matches that continue the neighbours'
     int n_expected;
-    FlMatch carried;  // what the drawing has taken to the pixel
-    uint32_t leaving; // what a match costs that does not continue it
+    FlMatch carried;  // the match that the drawing's motion took here
+    uint32_t leaving; // cost of a match that does not continue `carried`
     int n_kept;
     KeptCandidate kept[FL_MAX_CANDIDATES];
 } PixelSearch;
@@ -100,7 +100,7 @@ static uint32_t coherence_cost(const PixelSearch *ps, FlMatch candidate)
     return ps->tile_search->coherence[ps->n_expected][apart] + (leaves ? ps->leaving : 0);
 }
 
-/* That of a match which continues nothing. */
+/* The coherence cost of a match that continues no other match. */
 static uint32_t coherence_apart(const PixelSearch *ps)
 {
     return ps->tile_search->coherence[ps->n_expected][ps->n_expected] + ps->leaving;
@@ -130,7 +130,7 @@ static void find_expected(PixelSearch *ps)
     ps->n_expected = fl_matches_beside(ps->search, ps->x, ps->y, ps->expected);
 }
 
-/* Where candidates for a pixel are drawn from. */
+/* The windows of a pixel's candidates. */
 static const FlSearchWindows *windows_for(const FlTileSearch *tile_search, size_t pixel, int sweep)
 {
     const FlSearch *search = tile_search->search;
@@ -204,7 +204,7 @@ static void keep_candidate(PixelSearch *ps, int k, uint32_t uniformity)
         __builtin_prefetch(c->centre + offsets[p]);
 }
 
-/* What is known of a pixel before its candidates, beside what its neighbours expect. */
+/* Looks up the pixel's own data, without the matches that its neighbours expect. */
 static void look_up(PixelSearch *ps)
 {
     const FlSearch *search = ps->search;
@@ -256,8 +256,8 @@ static int try_match(PixelSearch *ps, const FlTargetPatch *patch, FlMatch match,
     return 1;
 }
 
-/* Whether neither rotation of a match at this place can continue a neighbour's or the carried one.
- */
+/* True if neither rotation of a match at this place can continue a neighbour's or the carried
+ * match. */
 static bool stands_apart(const PixelSearch *ps, FlMatch candidate)
 {
     for (int k = 0; k < ps->n_expected; k++)
@@ -266,7 +266,7 @@ static bool stands_apart(const PixelSearch *ps, FlMatch candidate)
     return ps->leaving == 0 || !fl_match_same_place(candidate, ps->carried);
 }
 
-/* Both rotations of a try [P21 §4.3]; their directions are the target's and cost nothing. */
+/* Both rotations of a try [P21 §4.3]; their directions are the target's and add no cost. */
 static int try_both(PixelSearch *ps, const FlTargetPatch *patch, const KeptCandidate *c)
 {
     const FlSearch *search = ps->search;
@@ -303,8 +303,8 @@ static int propagate(PixelSearch *ps, const FlTargetPatch *patch)
     return tried;
 }
 
-/* Whether a neighbour has changed since the pixel was last visited; those that the sweep before
- * visited first count once more. */
+/* True if a neighbour has changed since the pixel was last visited. Neighbours that the previous
+ * sweep visited first count once more. */
 static bool has_news(const PixelSearch *ps)
 {
     if (!ps->search->changed || ps->sweep == 0)
@@ -317,7 +317,7 @@ static bool has_news(const PixelSearch *ps)
            (ps->y + 1 < height && changed[width] >= ps->sweep);
 }
 
-/* Whether a neighbour's match continues as another one than the pixel has. */
+/* True if a neighbour's match continues as another match than the pixel's. */
 static bool differs_from_neighbours(PixelSearch *ps)
 {
     find_expected(ps);

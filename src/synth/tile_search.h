@@ -4,7 +4,7 @@
 
 #include "synth/patch_cost.h"
 
-/** What is the same for all pixels of a search. */
+/** Values shared by all pixels of a search. */
 typedef struct FlTileSearch {
     const FlSearch *search;
     FlSearchWindows windows, near; // near: for matches that have settled

@@ -79,13 +79,13 @@ static FlVoteMatches covering_at(const Strip *strip, int x, size_t k)
     return (FlVoteMatches){strip->x + at, strip->y + at, strip->frame + at, strip->turn + at};
 }
 
-/* What blocks are voted with, and where the votes go. */
+/* The input and the output of a vote. */
 typedef struct Votes {
     const FlNnf *nnf;
     FlVoteSource source;
     const FlKernels *kernels;
     int channels;
-    int first; // row of the field that the planes begin with
+    int first; // row of the field at which the planes begin
     float *colour;
     uint8_t *voted; // NULL: none
 } Votes;
@@ -106,7 +106,8 @@ static void vote_row(const Votes *votes, const Strip *strip, size_t k, int n, si
     }
 }
 
-/* What lies above a block and its patches. Returns: the number of rows. */
+/* Adds the rows that the patches around a block's first row cover, except the last. Returns: the
+ * number of rows. */
 static size_t begin_strip(Strip *strip, const FlNnf *nnf, FlRect block)
 {
     size_t rows = 0;

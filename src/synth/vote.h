@@ -9,13 +9,13 @@
  * Votes for every pixel of the blocks, NULL: of all, that a patch covers: the mask and a rim of 2
  * px around it.
  *
- * The patches over a pixel point to places in the exemplar. Those that agree on a place (the
- * same frame, within 3/4 px) are one cluster: their places are averaged, not their colours, so
- * a coherent field loses only one interpolation. Clusters are blended with weights
- * n^sharpness, n the number of patches behind each; sharpness 1 is the papers' mean.
+ * The patches over a pixel point to places in the exemplar. Those that agree on a place (the same
+ * frame, within 3/4 px) are one cluster: their places are averaged, not their colours, so a
+ * coherent field loses only one interpolation. Clusters are blended with weights n^sharpness, n the
+ * number of patches behind each; sharpness 1 is the papers' mean.
  *
- * colour: `channels` floats per pixel, 3 or with alpha 4, 0 … 1, untouched where nothing votes;
- * voted: in the blocks 1 where something did, else 0; may be NULL.
+ * colour: `channels` floats per pixel, 3 or with alpha 4, 0 … 1, untouched at pixels without votes;
+ * voted: in the blocks 1 at pixels with votes, else 0; may be NULL.
  */
 void fl_vote(const FlNnf *nnf, const FlBlocks *blocks, const FlExemplarLevel *level,
              const FlKernels *kernels, float sharpness, int channels, float *colour,
@@ -30,7 +30,7 @@ void fl_vote_rows(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernel
 
 /** A picture of twice the size of a field, with width or height one less if that is odd. */
 typedef struct FlDoubledPicture {
-    uint8_t *rgb;  // 3 bytes of sRGB a pixel, untouched where nothing votes
+    uint8_t *rgb;  // 3 bytes of sRGB a pixel, untouched without votes
     size_t stride; // pixels from row to row
     int width, height;
 } FlDoubledPicture;

@@ -53,13 +53,13 @@ static inline __m256i load_target(const FlTargetTexel *target)
     return _mm256_load_si256((const __m256i *)target);
 }
 
-/* The last pixel of 25, beside nothing. */
+/* The last pixel of 25; the upper lanes are 0. */
 static inline __m256i load_last(const FlTargetTexel *target)
 {
     return _mm256_zextsi128_si256(_mm_load_si128((const __m128i *)(target + 24)));
 }
 
-/* Texels beyond the 25th count for nothing. */
+/* Texels beyond the 25th add 0. */
 static inline __m256i last_term(__m128i texel, const FlTargetTexel *target, __m256i rest)
 {
     const __m256i t = load_last(target);
@@ -192,7 +192,7 @@ static inline __m256i uniformity_at(const FlCandidateFilter *filter, __m256i ind
                                              _mm256_set1_ps(filter->most)));
 }
 
-/* Which of eight texels are of the segment, in lanes of all ones. */
+/* Lanes of all ones for those of eight texels that are of the segment. */
 static inline __m256i of_segment(const FlCandidateFilter *filter, const uint32_t *pixel)
 {
     const __m256i last_bytes =
@@ -328,7 +328,7 @@ static int cluster_votes(const FlVotes *votes, FlVoteCluster *clusters)
     return n;
 }
 
-/* What sixteen turns add to the places of their matches, along an axis. */
+/* The offsets that sixteen turns add to the places of their matches, along an axis. */
 static inline __m256i offsets_along(const int16_t (*turn)[2], const int16_t (*step)[2])
 {
     const __m256i half = _mm256_set1_epi32(1 << 9);
@@ -398,7 +398,7 @@ void fl_upscale_row_avx2(const FlMatch *coarse, const FlOffset (*moves)[2], cons
 }
 
 /* The squared differences of a pixel; the past's are weighted first, the others by 32767, which
- * changes nothing. */
+ * leaves them as they are. */
 static inline __m256i fluid_terms(const FlFluidTexel *source, const FlFluidTexel *target)
 {
     const __m256i past = _mm256_setr_epi16(0, 0, 0, 0, 0, 0, 0, 0, -1, -1, -1, -1, 0, 0, 0, 0);

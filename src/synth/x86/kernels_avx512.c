@@ -88,7 +88,7 @@ void fl_patch_pair_avx512(const FlTexel *centre, const int16_t *offsets,
                           const FlTargetTexel *target, const FlTargetTexel *rest, uint32_t limit,
                           uint32_t distance[2])
 {
-    const __m256i turned = _mm256_broadcastsi128_si256( // two pixels change places, extents too
+    const __m256i turned = _mm256_broadcastsi128_si256( // swaps two pixels and their extents
         _mm_setr_epi8(8, 9, 10, 11, 13, 12, 14, 15, 0, 1, 2, 3, 5, 4, 6, 7));
     const __m512i others = load_rest(rest);
     __m512i sum = _mm512_setzero_si512(), turned_sum = sum;
@@ -185,7 +185,7 @@ static inline __m512i uniformity_at(const FlCandidateFilter *filter, __m512i ind
                                              _mm512_set1_ps(filter->most)));
 }
 
-/* Which of sixteen texels are of the segment. */
+/* The mask of those of sixteen texels that are of the segment. */
 static inline __mmask16 of_segment(const FlCandidateFilter *filter, const uint32_t *pixel)
 {
     const __m512i last_bytes = _mm512_i32gather_epi32(
@@ -277,7 +277,7 @@ static const uint32_t inverse[FL_PATCH_PIXELS + 1] = {
     0,    65536, 32768, 21846, 16384, 13108, 10923, 9363, 8192, 7282, 6554, 5958, 5462,
     5042, 4682,  4370,  4096,  3856,  3641,  3450,  3277, 3121, 2979, 2850, 2731, 2622};
 
-/* The mean place of n votes, x and y in 64-bit lanes, as mean_of() has it. */
+/* The mean place of n votes, x and y in 64-bit lanes, equal to mean_of(). */
 static inline __m128i mean_place(__m128i first, __m128i sums, int n)
 {
     const __m128i sum = _mm_sub_epi32(sums, _mm_set1_epi64x(32 * n));
@@ -298,7 +298,7 @@ static inline __m512i two_row_sums(const FlSplinePixel *first, size_t pitch, __m
     return _mm512_madd_epi16(_mm512_shuffle_epi8(rows, pairs), x);
 }
 
-/* The spline's value, as the contract of FlSplineSample has it. */
+/* The spline's value, by the contract of FlSplineSample. */
 static inline __m128 sample(const FlSplinePixel *first, size_t pitch, const FlSplinePhase *x,
                             const FlSplinePhase *y)
 {
@@ -317,7 +317,7 @@ static inline __m128 sample(const FlSplinePixel *first, size_t pitch, const FlSp
     return _mm_add_ps(sum, _mm512_extractf32x4_ps(parts, 3));
 }
 
-/* Where votes point to. */
+/* The places that votes point to. */
 typedef struct Places {
     __m512i x, y, frame;
 } Places;
@@ -355,7 +355,7 @@ static inline __m128i place_of(const Places *at, __mmask32 votes, int n, const P
     return mean_place(lead, sums, n);
 }
 
-/* What a cluster says, by the frame of its first vote and its place, which may lie beyond the
+/* The colour of a cluster, by the frame of its first vote and its place, which may lie beyond the
  * borders. */
 static inline __m128 cluster_colour(const Places *first, __m128i place, const FlVoteSource *voted)
 {
