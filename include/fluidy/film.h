@@ -15,7 +15,8 @@ G_BEGIN_DECLS
  * What a change does not touch is kept: after another "tint" or "paper" frames are only composed
  * again, after another "style" of a region that region alone is painted again, and after a change
  * of anything about paint the drawing is not read again. Painted pictures stay in memory, up to
- * 1 GiB or a quarter of the limit ‘memory’, so that a choice that is taken back costs nothing.
+ * 1 GiB or a quarter of the limit ‘memory’, so that a choice that is taken back shows the earlier
+ * pictures at once.
  *
  * Threads: one film belongs to one thread at a time; several threads may have a film each. While
  * the process has a single thread, drawings are read and drawn in child processes, which are
@@ -24,7 +25,7 @@ G_BEGIN_DECLS
 typedef struct FlFilm FlFilm;
 
 /**
- * The film of a drawing; reads nothing yet.
+ * The film of a drawing; no file is read yet.
  *
  * inputs: NULL-terminated list of patterns, globs, SVG files or one folder; copied.
  * Returns: to be freed with fl_film_close().
@@ -35,14 +36,14 @@ FL_API void fl_film_close(FlFilm *film); /**< NULL is fine */
 
 /**
  * Changes an option by its name on the command line, without the dashes: "width", "style", "tint",
- * "paper", "w-temp", … The value is written as there. It holds from the next call on; options of
- * files, such as "output", are for fl_film_render() alone.
+ * "paper", "w-temp", … The value is written as on the command line. It holds from the next call on;
+ * options of files, such as "output", are for fl_film_render() alone.
  *
  * region: the name of the region that it is for; NULL: all of them, or the whole film. value:
  * copied; NULL: the default again.
  *
- * Returns: false with FL_ERROR_USAGE, which names the option, the value and what was expected;
- * nothing has then changed. A region that does not exist is told by the next frame.
+ * Returns: false with FL_ERROR_USAGE, which names the option, the value and what was expected; all
+ * options then keep their values. A region that does not exist is told by the next frame.
  */
 FL_API bool fl_film_set(FlFilm *film, const char *region, const char *name, const char *value,
                         GError **error);
@@ -59,10 +60,10 @@ typedef struct FlFilmCalls {
     void *data; /**< handed to each of them */
 } FlFilmCalls;
 
-/** Sets the calls of a film; they hold from the next call on. NULL: none. */
+/** Sets the calls of a film; they hold from the next call on. NULL: no calls. */
 FL_API void fl_film_set_calls(FlFilm *film, const FlFilmCalls *calls);
 
-/** What is known of a drawing. Belongs to the film; later versions may add fields at the end. */
+/** Facts about a drawing. Belongs to the film; later versions may add fields at the end. */
 typedef struct FlFilmInfo {
     int n_frames;  /**< of the drawing, without those that are left out */
     int width;     /**< of the frames, px */
@@ -96,9 +97,10 @@ typedef struct FlFilmFrame {
  */
 FL_API const FlFilmFrame *fl_film_frame(FlFilm *film, int frame, GError **error);
 
-/** What a film has done so far. Belongs to the film; later versions may add fields at the end. */
+/** Counts of the work that a film has done so far. Belongs to the film; later versions may add
+ * fields at the end. */
 typedef struct FlFilmStats {
-    int n_read;     /**< how often the drawing was read */
+    int n_read;     /**< number of times that the drawing was read */
     int n_painted;  /**< pictures of regions that an engine has made or kept at rest */
     int n_composed; /**< frames */
 } FlFilmStats;

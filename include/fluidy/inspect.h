@@ -1,5 +1,5 @@
 /** @file
- * The regions of a drawing, as lists and maps; nothing is painted.
+ * The regions of a drawing, as lists and maps, without painting.
  *
  * Threads: any thread may call these functions, several at a time with outputs of their own. They
  * read and draw as fl_render() does, which may fork.
@@ -11,10 +11,10 @@
 
 G_BEGIN_DECLS
 
-/** How regions are listed as text. */
+/** The format of a list of regions. */
 typedef enum FlListing {
     FL_LISTING_TABLE,  /**< a line per region, the columns padded with spaces */
-    FL_LISTING_CONFIG, /**< a config file with a section per region, to start from */
+    FL_LISTING_CONFIG, /**< a config file with a section per region, as a starting point */
     FL_LISTING_JSON,   /**< an object with the drawing's size and frames, and a list of regions */
 } FlListing;
 
@@ -28,12 +28,12 @@ FL_API char *fl_list_regions(const FlRenderOptions *options, FlListing listing, 
 
 /** A region of a drawing. Strings are its own. */
 typedef struct FlRegionInfo {
-    char *name;      /**< unique, of [a-z0-9-]; what settings and file names call it */
+    char *name;      /**< unique, of [a-z0-9-]; the name in settings and file names */
     char *paint;     /**< "#rrggbb", "gradient" or "image": of most of its area */
-    char *layer;     /**< the layers that it is in, with / between; "": none */
-    char *section;   /**< of the config, which made it; NULL: none */
+    char *layer;     /**< path of the layers that contain it, with / between; "": not in a layer */
+    char *section;   /**< the config section that made the region; NULL: no section did */
     int n_frames;    /**< in which it is drawn */
-    int first_frame; /**< the number of the first of them; 0 if there is none */
+    int first_frame; /**< the number of the first of them; 0 if no frame has it */
     int n_shapes;    /**< most that it had in a frame */
     double area_px;  /**< mean over those frames, px */
     bool painted;    /**< false: it is drawn over the paint as it is */

@@ -1,9 +1,9 @@
 /** @file
  * Pixels in, pixels out: paints one region from masks in memory, frame by frame. The only files are
- * the style's, those of a cache if one is wanted, and a temporary one without a name for what
- * guides keep of a film.
+ * the style's, those of a cache if one is wanted, and a temporary one without a name for the
+ * guides' data about the whole film.
  *
- * Threads: any thread may paint, several at a time; nothing forks.
+ * Threads: any thread may paint, several at a time; no process is forked.
  */
 #ifndef FLUIDY_PAINT_H
 #define FLUIDY_PAINT_H
@@ -18,16 +18,16 @@ typedef struct FlPaintedFrame {
     int frame;            /**< from 0 */
     int width;            /**< of the masks, px */
     int height;           /**< of the masks, px */
-    const uint8_t *paint; /**< width * height * 3 sRGB: the paint in the recording's own colours,
-                             its paper where none is; what ‘paint’ writes */
+    const uint8_t *paint; /**< width * height * 3 sRGB: the paint in the recording's own colours, as
+                             in the files of ‘paint’; its paper where there is no paint */
     const uint8_t *layer; /**< width * height * 4 straight sRGBA: the paint cut out with the mask,
-                             in the colour of the setting "tint"; paint with alpha of its own
-                             keeps that, and reaches some px beyond the mask */
+                             in the colour of the setting "tint"; paint with alpha of its own keeps
+                             its alpha and reaches some px beyond the mask */
 } FlPaintedFrame;
 
 /**
  * A region through time, and how it is painted. Zero the struct and set `size`, so that a program
- * and a library of different versions understand each other; what is 0 is the default.
+ * and a library of different versions understand each other; a field of 0 means its default.
  *
  * All calls come from the thread that called fl_paint_region(). Returning false stops it.
  */
@@ -43,10 +43,11 @@ typedef struct FlRegionPaint {
      */
     bool (*mask)(void *data, int frame, uint8_t *coverage);
     /**
-     * Fills 2 * width * height floats, x and y in turn, with how what is at each pixel has moved
-     * since the frame before: px, y downwards, up to 100,000; NAN where it is not known. Asked for
-     * every frame, of which the first has none before it. The paint is carried along; under the
-     * setting motion = masks it only says which way the contours move. NULL: from the masks.
+     * Fills 2 * width * height floats, x and y in turn, with the motion of the drawing at each
+     * pixel since the frame before: px, y downwards, up to 100,000; NAN where the motion is
+     * unknown. Called for every frame; the first has no frame before it. The paint is carried
+     * along; under the setting motion = masks it only says which way the contours move. NULL: from
+     * the masks.
      */
     bool (*flow)(void *data, int frame, float *flow);
     bool (*take)(void *data, const FlPaintedFrame *painted); /**< every frame in order; required */
@@ -55,14 +56,14 @@ typedef struct FlRegionPaint {
     const char *name;          /**< decides the random numbers with the seed; NULL: "region" */
     const FlSetting *settings; /**< "style" is required; "tint" is "keep" unless a "#rrggbb"; keys
                                   as in fluidy-svg.conf(5), of which those about other regions,
-                                  lines or the paper do nothing */
+                                  lines or the paper have no effect */
     size_t n_settings;         /**< in `settings` */
     uint64_t seed;             /**< same input, settings and seed: same bytes; 0: 1 */
-    int threads; /**< of this call alone; 0: as many as the calling thread has. The bytes do not
-                      depend on it */
-    /** A folder in which pictures are kept and from which they are taken while all that decides
-     *  them is the same, so that a painting that was stopped resumes there; "auto": the user's, as
-     *  of ‘cache’; NULL: none. */
+    int threads; /**< of this call alone; 0: as many as the calling thread has. The output bytes are
+                    the same for every number of threads */
+    /** A folder that caches painted pictures. They are reused while all inputs that decide them are
+     * the same, so that a painting that was stopped resumes. "auto": the user's cache folder, as
+     * for the option ‘cache’; NULL: no cache. */
     const char *cache;
     int cache_size; /**< MiB, beyond which the cache drops pictures used longest ago; 0: 8192 */
 } FlRegionPaint;

@@ -10,7 +10,7 @@
 
 G_BEGIN_DECLS
 
-/** What a parameter's value is. */
+/** The type of a parameter's value. */
 typedef enum FlParamType {
     FL_PARAM_INT,
     FL_PARAM_FLOAT,
@@ -22,20 +22,20 @@ typedef enum FlParamType {
 typedef enum FlPreset {
     FL_PRESET_DEFAULT,
     FL_PRESET_FLUIDYMATION, /**< "fluidymation": its table 1, 2021 */
-    FL_PRESET_THESIS,       /**< "thesis": the thesis behind it, 2021, section 4.5 */
-    FL_PRESET_LAZYFLUIDS,   /**< "lazyfluids": LazyFluids, 2015, section 5 */
-    FL_PRESET_FLUID,        /**< "fluid": the same method with what pictures are better for */
+    FL_PRESET_THESIS, /**< "thesis": the thesis on which the paper is based, 2021, section 4.5 */
+    FL_PRESET_LAZYFLUIDS, /**< "lazyfluids": LazyFluids, 2015, section 5 */
+    FL_PRESET_FLUID,      /**< "fluid": the same method with what pictures are better for */
     FL_PRESETS
 } FlPreset;
 
-/** What is known of a parameter; all strings are static. */
+/** The description of a parameter; all strings are static. */
 typedef struct FlParamInfo {
     const char *name; /**< with dashes, as on the command line and in config files: "w-temp" */
     FlParamType type; /**< of its value */
     const char *unit; /**< "px", "frames", …; "" for a plain number */
     double min;       /**< inclusive; of each item for a list; 0 for a bool */
     double max;       /**< likewise; 1 for a bool */
-    const char *preset[FL_PRESETS]; /**< its value in each of them, as fl_params_set() reads it */
+    const char *preset[FL_PRESETS]; /**< in the syntax of fl_params_set() */
     const char *help;               /**< one line, no full stop */
 } FlParamInfo;
 
@@ -45,7 +45,8 @@ FL_API int fl_param_count(void);
 /** index is 0 … fl_param_count() - 1; the order is the documentation's. */
 FL_API const FlParamInfo *fl_param_info(int index);
 
-/** Returns: the index of the parameter of this name; -1 if there is none. '_' is read as '-'. */
+/** Returns: the index of the parameter of this name; -1 if the name is unknown. '_' is read as
+ * '-'. */
 FL_API int fl_param_find(const char *name);
 
 /** A value for each parameter. */
@@ -70,8 +71,8 @@ FL_API bool fl_params_preset(FlParams *params, const char *preset, GError **erro
  */
 FL_API bool fl_params_set(FlParams *params, const char *name, const char *value, GError **error);
 
-/** Returns: the value as fl_params_set() reads it, to be freed with g_free(); NULL: no such name.
- */
+/** Returns: the value in the syntax of fl_params_set(), to be freed with g_free(); NULL: no such
+ * name. */
 FL_API char *fl_params_get(const FlParams *params, const char *name);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlParams, fl_params_free)

@@ -16,7 +16,7 @@
 
 G_BEGIN_DECLS
 
-/** What to do about a gap in the frame numbers. */
+/** The treatment of gaps in the frame numbers. */
 typedef enum FlMissing {
     FL_MISSING_UNSET, /**< the config's, else FL_MISSING_ERROR */
     FL_MISSING_ERROR, /**< FL_ERROR_INPUT, which lists them */
@@ -24,7 +24,7 @@ typedef enum FlMissing {
     FL_MISSING_SKIP,  /**< no output for them */
 } FlMissing;
 
-/** What the frames are in the files. */
+/** The source of the frames: files, or layers, pages or moments of one file. */
 typedef enum FlFramesFrom {
     FL_FRAMES_UNSET,  /**< the config's, else FL_FRAMES_AUTO */
     FL_FRAMES_AUTO,   /**< each file is one; of a lone file its pages are, if it has several, or
@@ -35,7 +35,7 @@ typedef enum FlFramesFrom {
     FL_FRAMES_TIME,   /**< moments of one file are, FlRenderOptions.fps in a second */
 } FlFramesFrom;
 
-/** What makes leaves of different frames one region. */
+/** The key by which leaves of different frames are grouped into one region. */
 typedef enum FlRegionKey {
     FL_KEY_UNSET, /**< the config's, else FL_KEY_AUTO */
     FL_KEY_AUTO,  /**< the layer label without frame numbers, and the paint; else by overlap */
@@ -46,7 +46,7 @@ typedef enum FlRegionKey {
     FL_KEY_TREE,  /**< the place in the document tree */
 } FlRegionKey;
 
-/** How the strokes of the drawing are rendered. */
+/** The rendering of the drawing's strokes. */
 typedef enum FlStrokes {
     FL_STROKES_UNSET, /**< the config's, else FL_STROKES_AUTO */
     FL_STROKES_AUTO,  /**< drawn over the paint; but painted where the drawing is mostly strokes,
@@ -56,7 +56,7 @@ typedef enum FlStrokes {
     FL_STROKES_DROP,  /**< left out */
 } FlStrokes;
 
-/** Whether frames that an exporter has shifted are registered again. */
+/** Registration of frames that an exporter has shifted. */
 typedef enum FlRegistration {
     FL_REGISTRATION_UNSET, /**< the config's, else FL_REGISTRATION_OFF */
     FL_REGISTRATION_OFF,
@@ -64,7 +64,7 @@ typedef enum FlRegistration {
                            does: each is moved back so that most of it stands still */
 } FlRegistration;
 
-/** Whether the processes that read and draw strangers' files are confined. */
+/** The sandbox of the processes that read and draw untrusted files. */
 typedef enum FlSandboxing {
     FL_SANDBOXING_UNSET, /**< FL_SANDBOXING_AUTO */
     FL_SANDBOXING_AUTO,  /**< as far as the system lets them, with a warning if a part is missing */
@@ -75,18 +75,18 @@ typedef enum FlSandboxing {
 /** The colour space in which layers are blended. */
 typedef enum FlBlendSpace {
     FL_BLEND_UNSET, /**< the config's, else FL_BLEND_SRGB */
-    FL_BLEND_SRGB,  /**< as SVG does it */
+    FL_BLEND_SRGB,  /**< the colour space of SVG by default */
     FL_BLEND_LINEAR,
 } FlBlendSpace;
 
-/** How large the files of a region's paint are. */
+/** The size of the files of a region's paint. */
 typedef enum FlPaintArea {
     FL_PAINT_AREA_UNSET,  /**< FL_PAINT_AREA_FRAME */
     FL_PAINT_AREA_FRAME,  /**< as the frames, so that other programs can stack them */
     FL_PAINT_AREA_REGION, /**< as the region in all frames, which a merge reads sooner */
 } FlPaintArea;
 
-/** What to do about output files that exist. */
+/** The treatment of output files that exist. */
 typedef enum FlOverwrite {
     FL_OVERWRITE_REFUSE, /**< FL_ERROR_EXISTS before anything is painted */
     FL_OVERWRITE_YES,    /**< replace each one, once the new file is complete */
@@ -112,103 +112,107 @@ typedef struct FlProgress {
     int total;          /**< to be done; 0: not known yet */
     double share;       /**< of the whole render, 0..1; of the style in the stage “style” */
     double elapsed_s;   /**< seconds since the start */
-    double frame_s;     /**< seconds that the last frame of this stage took; 0: none yet */
+    double frame_s;     /**< seconds that the last frame of this stage took; 0 before the first */
     double remaining_s; /**< estimate for the rest; negative: not known yet */
 } FlProgress;
 
 /**
  * The options of a render. A zeroed struct means all defaults; inputs are required. The config
- * gives what is not set here; a negative gap means none.
+ * gives what is not set here; a negative gap means no gap.
  *
  * Strings belong to the caller and must stay until fl_render() returns. Paths and patterns are
  * relative to the working directory. A pattern has one frame number, written %d, %04d or ####.
  */
 typedef struct FlRenderOptions {
-    /* What is read. */
+    /* Input. */
     const char *const
         *inputs;        /**< NULL-terminated list of patterns, globs, SVG files or one folder */
     const char *frames; /**< "1001-1096", "1-96x2", "1,5,9"; NULL: all that are found */
-    FlMissing missing;  /**< what a gap in the numbers becomes */
-    FlFramesFrom frames_from; /**< what the frames are */
+    FlMissing missing;  /**< treatment of gaps in the numbers */
+    FlFramesFrom frames_from; /**< source of the frames */
     double from_s;            /**< of FL_FRAMES_TIME: the first moment, seconds */
     double to_s;              /**< its end, seconds; 0: all */
     const char *canvas; /**< "WxH" or "WxH+X+Y" in px, for SVGs without a size; NULL: theirs */
     FlRegistration registration; /**< of frames that an exporter has shifted */
     const char *flow; /**< pattern of files, one per frame, may hold {region}: the motion into it
-                         from the frame before; NULL: none */
-    FlRegionKey key;  /**< what makes leaves one region */
-    FlStrokes stroke; /**< what strokes become */
+                         from the frame before; NULL: no flow files */
+    FlRegionKey key;  /**< key that groups leaves into regions */
+    FlStrokes stroke; /**< rendering of strokes */
     bool strict;      /**< a warning is an error: FL_ERROR_INPUT, of a style FL_ERROR_STYLE */
-    FlSandboxing sandbox; /**< whether drawings are read in confined processes */
+    FlSandboxing sandbox; /**< confines the processes that read drawings */
 
-    /* How it is painted. */
-    const char *config;        /**< a file as in fluidy-svg.conf(5); NULL: none */
+    /* Painting. */
+    const char *config;        /**< a file as in fluidy-svg.conf(5); NULL: no config */
     const FlSetting *settings; /**< override the config's; of several, the last wins */
     size_t n_settings;         /**< in `settings` */
-    const char *only_region;   /**< paint this one alone, or several with commas between, over
-                                  nothing; NULL: all */
+    const char *only_region;   /**< name, or several with commas between: paint these regions alone,
+                                  on a transparent page; NULL: all */
     bool loop;                 /**< the end leads into the beginning, for films that are repeated */
     uint64_t seed; /**< same input, options and seed: same bytes; 0: the config's, else 1 */
 
-    /* What is written. */
+    /* Output. */
     const char *output; /**< pattern; NULL: the config's, else "fluidy/NAME_%04d.png", NAME from the
                            input */
     const char *format; /**< "png", "png16", "exr", "mov", …; NULL: as the output's name ends */
-    bool no_frames;     /**< if the output is a film, do not write its frames as PNG beside it */
-    const char *layers; /**< pattern with {region}: one RGBA file per region too; NULL: none */
-    const char
-        *paint; /**< the same for the paint itself, before colours and stacking; NULL: none */
-    FlPaintArea paint_area; /**< how large the files of `paint` are */
-    bool merge; /**< paint nothing: compose the files of `paint` that other runs have written */
+    bool no_frames; /**< if the output is a film, write the film alone, without its frames as PNG
+                       files */
+    const char *layers; /**< pattern with {region} for one RGBA file per region; NULL: no layers */
+    const char *paint;  /**< the same for the paint itself, before colours and stacking; NULL: no
+                           paint files */
+    FlPaintArea paint_area; /**< size of the files of `paint` */
+    bool merge; /**< do not paint: compose the files of `paint` that other runs have written */
     /** "K/N": merge the K-th of N parts of the frames alone, without their film; "film": make the
      *  film of the frames that such merges have composed; NULL: all */
     const char *part;
     const char *background; /**< "#rrggbb", "none", an image or a pattern; NULL: the paper */
     double stain_time;      /**< frames at 24 per second in which stains fade to a third; 0: 7 */
     double overrun; /**< px on a page of 480 px that fronts go beyond shapes, ..40; 0: 5, below 0:
-                       none */
+                       no overrun */
     const char *camera; /**< the region that the paper moves with; "none"; "auto", NULL: the largest
                            that covers two fifths of the page or more */
     /** "cold", "hot", "rough", "laid", "kraft", a PNG or JPEG file or "none"; "auto", NULL: cold
      * where there is no background, else its tooth alone */
     const char *paper;
     double paper_scale;  /**< factor on the grain's size, which follows the page's; 0: 1 */
-    double paper_relief; /**< ..2; 0: 1, below 0: none */
+    double paper_relief; /**< ..2; 0: 1, below 0: no relief */
     uint64_t paper_seed; /**< 0: 1 */
     int paper_boil;      /**< frames after which another part of the sheet is taken; 0: never */
     int width;           /**< px; 0: from the height, by the drawing's aspect; both 0: scale */
     int height;          /**< likewise */
     double scale;        /**< px of output per px of the drawing; 0: 1 */
     double dpi;          /**< px per inch, for drawings sized in mm, cm, in, pt; 0: 96 */
-    double gap;          /**< px of paper around a region that hides others, ..32; 0: none */
+    double gap;          /**< px of paper around a region that hides others, 0..32 */
     FlBlendSpace blend;  /**< in which layers are blended */
     double fps; /**< frames per second of an output that is a film; 0: the config's, else 24 */
-    FlOverwrite overwrite; /**< what happens to files that exist */
+    FlOverwrite overwrite; /**< treatment of files that exist */
     /** Resume an interrupted render even with FL_OVERWRITE_YES, which otherwise starts anew. The
      *  others always resume. */
     bool resume;
     /** A folder in which paint is kept and from which it is taken while all that decides it is the
-     *  same; "auto": paint below the user's cache folder; NULL, "off": none. */
+     *  same; "auto": paint below the user's cache folder; NULL, "off": no cache. */
     const char *cache;
     int cache_size;     /**< MiB, beyond which the cache drops what was used least; 0: 8192 */
-    const char *stats;  /**< JSON lines about every frame, region and level; NULL: none */
+    const char *stats;  /**< a file for JSON lines about every frame, region and level; NULL: no
+                           statistics */
     const char *report; /**< a folder for the HTML report, index.html; "-": standard output gets
-                           its frames as they are painted, without figures; NULL: none */
+                           its frames as they are painted, without figures; NULL: no report */
     const char
-        *dump; /**< a folder for guides, fields and T_temp as pictures and data; NULL: none */
+        *dump; /**< a folder for guides, fields and T_temp as pictures and data; NULL: no dump */
     const char *ebsynth; /**< a folder for pairs of guides and ebsynth's command lines; with `merge`
-                            and no `paint`, the folder that it has painted in; NULL: none */
+                            and no `paint`, the folder with the pictures that ebsynth painted; NULL:
+                            no export */
 
     /* How it runs. */
     bool watch;   /**< it is rendered again and again: an interrupted render leaves no state, since
                        its paint is in the cache. The program's loop is not part of fl_render() */
-    bool dry_run; /**< check everything, estimate the time, write nothing */
-    int threads;  /**< 0: one per processor. The bytes do not depend on it */
+    bool dry_run; /**< check everything and estimate the time, without writing files */
+    int threads;  /**< 0: one per processor. The output bytes are the same for every number of
+                     threads */
     /** Called after every frame of a stage, now and then while frames are read, from the calling
-     * thread; false stops the render with FL_ERROR_INTERRUPTED. NULL: nothing is called. */
+     * thread; false stops the render with FL_ERROR_INTERRUPTED. NULL: no progress is reported. */
     bool (*progress)(const FlProgress *progress, void *data);
     /** Called now and then, from any thread, while another program is waited for; true stops the
-     *  render with FL_ERROR_INTERRUPTED. NULL: nothing is called. */
+     * render with FL_ERROR_INTERRUPTED. NULL: the render cannot be stopped there. */
     bool (*stopped)(void *data);
     /** Called with one line about something odd in the input; the message has no line feed. */
     void (*warning)(const char *message, void *data);
@@ -217,7 +221,7 @@ typedef struct FlRenderOptions {
     /** Called with the path of each file and folder that the render reads, but for the config and
      *  the drawings' own files: what they refer to, folders of styles, papers, flow. */
     void (*reads)(const char *path, void *data);
-    bool verbose; /**< notes about decisions too, such as the style of a region */
+    bool verbose; /**< also notes about decisions, such as the style of a region */
     void *data;   /**< handed to progress, stopped, warning, note and reads */
 } FlRenderOptions;
 

@@ -15,11 +15,12 @@ G_BEGIN_DECLS
 
 /** A style that was found. */
 typedef struct FlStyleEntry {
-    char *name;      /**< the folder's name, which selects it */
-    char *path;      /**< the folder */
-    char *title;     /**< what style.ini calls it, which selects it too; NULL: nothing */
-    bool hidden;     /**< a style of the same name is found before it */
-    char *character; /**< what style.ini says it looks like and is for; NULL: nothing */
+    char *name;  /**< the folder's name, which selects the style */
+    char *path;  /**< the folder */
+    char *title; /**< the name in style.ini, which also selects the style; NULL: style.ini has no
+                    name */
+    bool hidden; /**< an earlier folder has a style of the same name */
+    char *character; /**< the description in style.ini; NULL: style.ini has no description */
 } FlStyleEntry;
 
 /**
@@ -33,15 +34,15 @@ FL_API GPtrArray *fl_style_list(void);
  */
 FL_API char **fl_style_folders(void);
 
-/** How a recording becomes a style. Start from FL_STYLE_IMPORT_DEFAULTS. */
+/** Settings for the import of a recording as a style. Start from FL_STYLE_IMPORT_DEFAULTS. */
 typedef struct FlStyleImport {
     const char *source; /**< a video, a still picture, a `%04d` or `####` pattern, or a folder */
     const char *masks;  /**< pattern, folder or video of masks, white where the paint is; or NULL */
     const char *folder; /**< the style to write */
-    int first;   /**< frame to begin with, by the source's number, a video's from 1; 0: its first */
-    int last;    /**< frame to end with; 0: its last */
-    int step;    /**< take every step-th of them, >= 1 */
-    int crop[4]; /**< x, y, width, height in px of the source; width 0: everything */
+    int first; /**< first frame, by the source's number, a video's from 1; 0: the source's first */
+    int last;  /**< last frame; 0: the source's last */
+    int step;  /**< take every step-th of them, >= 1 */
+    int crop[4];         /**< x, y, width, height in px of the source; width 0: everything */
     double scale;        /**< 0.01 to 4; 0: as it is, or made smaller to 640 px */
     bool flatten;        /**< remove uneven and changing light */
     bool stabilise;      /**< remove small camera shake */
@@ -71,7 +72,7 @@ typedef struct FlStyleImport {
  */
 FL_API bool fl_style_import(const FlStyleImport *import, GPtrArray *notes, GError **error);
 
-/** What fl_style_check() found. */
+/** The results of fl_style_check(). */
 typedef struct FlStyleReport {
     char *text;     /**< the report, lines of plain text */
     int n_problems; /**< lines that begin with "problem" */

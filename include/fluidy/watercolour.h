@@ -18,10 +18,10 @@ typedef bool (*FlWatercolourProgress)(int frame, int n_frames, void *data);
  * Simulates a recipe and writes the frames as a style: style.ini, frames/0001.png …,
  * masks/0001.png ….
  *
- * Makes the folder if it does not exist; other files in it stay. Writes everything after the last
- * frame, or nothing. The same recipe and size give the same bytes on any thread count. progress
- * may be NULL. size is 1, 2 or 4: how often the recipe's width and height; the paint is the same,
- * its finest grain is finer.
+ * Makes the folder if it does not exist; other files in it stay. Writes all files after the last
+ * frame; on failure it writes no file. The same recipe and size give the same bytes on any thread
+ * count. progress may be NULL. size is 1, 2 or 4: how often the recipe's width and height; the
+ * paint is the same, its finest grain is finer.
  *
  * Returns: false with FL_ERROR_INPUT (the recipe; its file and line are named), FL_ERROR_EXISTS if
  * there is a style in the folder and `overwrite` is false, FL_ERROR_LIMIT, FL_ERROR_NO_MEMORY,

@@ -33,7 +33,7 @@ typedef struct FlArgs {
     FlCommand task;
     FlRenderOptions render; // its strings belong to this struct
     FlProgressMode progress;
-    const char *preview; // a range of frames; NULL: none
+    const char *preview; // a range of frames; NULL: no preview
     char **variants;     // of FL_COMMAND_COMPARE, styles; NULL: all there are; or _METHODS
     FlFarm farm;         // of FL_COMMAND_PLAN
     char **command;      // likewise: the words without --plan

@@ -9,7 +9,7 @@
  * NULL: the line is dropped. */
 typedef char *(*FlConfigValue)(const char *section, const char *key, const char *value, void *data);
 
-/** The text with every value replaced by what `map` makes of it. Returns: to be freed. */
+/** The text with every value replaced by the result of `map`. Returns: to be freed. */
 char *fl_config_edit_map(const char *text, FlConfigValue map, void *data);
 
 /**

@@ -22,7 +22,7 @@ void fl_file_watch_add(FlFileWatch *watch, const char *path);
 /** Watches what `old` was told to add. */
 void fl_file_watch_add_all(FlFileWatch *watch, const FlFileWatch *old);
 
-/** Whether anything has changed since fl_file_watch_new(). Does not wait. */
+/** Returns: true if a file has changed since fl_file_watch_new(). Does not wait. */
 bool fl_file_watch_changed(FlFileWatch *watch);
 
 /** The answer of the last fl_file_watch_changed(); any thread may ask. */
@@ -36,7 +36,7 @@ bool fl_file_watch_has_changed(const FlFileWatch *watch);
  */
 bool fl_file_watch_wait(FlFileWatch *watch, const volatile sig_atomic_t *stop);
 
-/** Whether something has changed, and that wait would be over. Does not wait. */
+/** Returns: true if a file has changed and fl_file_watch_wait() would return. Does not wait. */
 bool fl_file_watch_has_settled(FlFileWatch *watch);
 
 /** The name of the file that changed last, without its folder; "" before any has. Borrowed. */

@@ -4,7 +4,8 @@
 
 #include "params/options.h"
 
-/** An option in GOption's terms, without what reads it. The strings live as long as the program. */
+/** An option in GOption's terms, without the function that reads its value. The strings live as
+ * long as the program. */
 GOptionEntry fl_help_entry(const FlOption *option);
 
 /** The text of --help, or of --help-all; to be freed with g_free(). */

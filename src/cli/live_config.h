@@ -8,8 +8,8 @@
 typedef struct FlLiveConfig FlLiveConfig;
 
 /**
- * Reads the config file, which stays as it is, and adds what the command line says; args must
- * outlive it. FL_ERROR_INPUT. Returns: to be freed with fl_live_config_free().
+ * Reads the config file without changing the file, and adds the options of the command line. args
+ * must outlive the result. FL_ERROR_INPUT. Returns: to be freed with fl_live_config_free().
  */
 FlLiveConfig *fl_live_config_new(const FlArgs *args, GError **error);
 
@@ -33,7 +33,7 @@ char *fl_live_config_portable(const FlLiveConfig *config);
 /** Appends {"section":{"key":"value",…},…}. */
 void fl_live_config_json(const FlLiveConfig *config, GString *json);
 
-/** What can be chosen, from the table of options: {"options":[…],"styles":[…]}. To be freed. */
+/** The available choices, from the table of options: {"options":[…],"styles":[…]}. To be freed. */
 char *fl_live_config_options(void);
 
 void fl_live_config_free(FlLiveConfig *config); // NULL is fine

@@ -16,12 +16,12 @@ typedef enum FlLiveStep {
 /** The step's name in the page; static. */
 const char *fl_live_step_name(FlLiveStep step);
 
-/** What is known of the render; borrowed until the main loop goes on. */
+/** The state of the render; borrowed until the main loop goes on. */
 typedef struct FlLiveState {
     FlLiveStep step;
     GPtrArray *lines;     // char *: the films and frames of all steps since the start, JSON objects
     GPtrArray *messages;  // char *: the step's warnings and errors, JSON objects
-    const char *progress; // a JSON object; NULL: nothing yet
+    const char *progress; // a JSON object; NULL: not known yet
     GString *page;        // the step's report so far
 } FlLiveState;
 
@@ -42,7 +42,7 @@ FlLiveRender *fl_live_render_new(const FlArgs *args, int width, int larger, FlTa
 /**
  * Ends what is being painted and begins anew.
  *
- * config: text that can be read anywhere. preview: a range of frames to show first; NULL: none.
+ * config: text that can be read anywhere. preview: a range of frames to show first; NULL: no range.
  * drafts_only: the film is wanted no better.
  */
 void fl_live_render_start(FlLiveRender *render, const char *config, const char *preview,

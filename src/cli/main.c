@@ -81,7 +81,7 @@ static void show_note(const char *message, void *data)
     say(data, "note", message);
 }
 
-/* Who shows the film live reads it among the lines of JSON. */
+/* The live viewer reads it among the lines of JSON. */
 static void take_input(const char *path, void *data)
 {
     Reporter *reporter = data;
@@ -235,7 +235,7 @@ static void note_change(Reporter *reporter)
     say(reporter, "note", line);
 }
 
-/* Paints; where that fails since a file is changing, the next round comes soon.
+/* Paints. If this fails because a file is changing, the next round starts soon.
  * Returns: the status to end with; -1: go on. */
 static int watch_round(FlArgs *args, Reporter *reporter)
 {
@@ -366,8 +366,8 @@ static int run(FlArgs *args)
     }
 }
 
-/* A standard stream that is closed would become the first file that is opened. Nothing can be
- * written to what takes its place, so that it still is an error to print. */
+/* A standard stream that is closed would become the first file that is opened. The file that takes
+ * its place cannot be written, so that printing is still an error. */
 static void fill_standard_streams(void)
 {
     int fd;

@@ -9,8 +9,8 @@ typedef struct FlMeter {
     FILE *stream;
     FlProgressMode mode; // never FL_PROGRESS_AUTO
     bool colour;
-    int bar_columns;   // of the bar on the terminal; 0: none
-    double shown_s;    // when the last was shown, seconds since the start
+    int bar_columns;   // of the bar on the terminal; 0: no bar
+    double shown_s;    // time of the last display, seconds since the start
     const char *stage; // of the last shown
     int region_index;
 } FlMeter;

@@ -7,8 +7,8 @@
 
 typedef struct FlBackground {
     bool none;           // transparent
-    uint8_t flat[3];     // if neither none nor a pattern
-    bool opaque;         // nothing of it is transparent, in any frame
+    uint8_t flat[3];     // unless it is absent or a pattern
+    bool opaque;         // true if it is opaque in all frames
     const char *pattern; // of PNG files, or one file; borrowed; NULL: flat
     uint8_t paper[3];    // on which paint is thought to lie: flat, or the style's paper
 } FlBackground;

@@ -70,7 +70,8 @@ static int64_t lightness16_of(const uint8_t rgb[3])
     return MAX(lightness16(luminance_of(level)), 16 * FRACTION);
 }
 
-/** The lightness of a fill, and the speed at which more of its own density darkens it. */
+/** The lightness of a fill, and the speed at which more of the fill's density darkens the
+ * colour. */
 typedef struct Lightness {
     int64_t lightness16; // L* + 16
     int64_t slope;       // L* an amount
@@ -236,7 +237,7 @@ static int64_t more_than_one(int64_t amount, int64_t knee)
     return more >= knee ? more : (more + knee) * (more + knee) / (4 * knee);
 }
 
-/** Where thin paint ends. */
+/** The amount at which thin paint ends. */
 static int turn_of(const FlColourCurve *curve)
 {
     return FL_AMOUNT_ONE - curve->knee;

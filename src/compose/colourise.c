@@ -51,7 +51,7 @@ typedef struct Fill {
     uint8_t least[FL_AMOUNTS / LEAST_STEP]; // the greatest of the least alphas up to a step
     int n_least;                            // of them are known: most paint is far from the last
     int turn_at;                            // the amount at which channels turn
-    uint8_t least_there;                    // the least alpha of that
+    uint8_t least_there;                    // the least alpha at turn_at
 } Fill;
 
 /* Only the middle channel moves, so that orange goes to yellow and red, sky blue to cyan and
@@ -178,7 +178,7 @@ static void colour_flat(const FlInk *ink, const FlColouring *colouring, const Fl
     }
 }
 
-/** The most paint that a pixel of an area has; -1: there is none. */
+/** The most paint that a pixel of an area has; -1: no pixel has paint. */
 static int most_amount(const int16_t *amounts, const FlArea *area)
 {
     int most = -1;
@@ -200,10 +200,10 @@ static void colour_flat_play(const FlInk *ink, const FlColouring *colouring,
 {
     const size_t n_amounts = (size_t)(most_amount(amounts, area) + 1);
     const size_t n = n_amounts * PLAYS;
-    g_autofree uint32_t *colours = g_new(uint32_t, n); // where it was met
+    g_autofree uint32_t *colours = g_new(uint32_t, n); // set for the pairs in `met`
     g_autofree bool *met = g_new0(bool, n);
     g_autofree Look *looks = g_new(Look, n_amounts);
-    g_autofree bool *seen = g_new0(bool, n_amounts); // which looks are known
+    g_autofree bool *seen = g_new0(bool, n_amounts); // looks that are known
     Fill fill;
     fill_init(&fill, ink, colouring, scale, colouring->fill);
     for (int y = 0; y < area->box.height; y++) {
@@ -245,7 +245,7 @@ static const uint8_t *painted_row(const FlPaintedPart *painted, FlRect box, int 
 /** The exemplar's own colours on the output's paper. */
 typedef struct Kept {
     int32_t paper[3];     // density
-    int32_t step[3][256]; // density that a level of a channel adds to it
+    int32_t step[3][256]; // density that a level of a channel adds
 } Kept;
 
 static void kept_init(Kept *kept, const FlInk *ink, const uint8_t paper[3])
@@ -313,7 +313,8 @@ static void take_alpha(const FlPaintedPart *painted, const int16_t *amounts, con
     }
 }
 
-/** Fills that have been met, each at the place of its colour: a later one takes it. */
+/** Fills that have been met, each at the place of its colour; a later fill replaces an earlier
+ * one. */
 #define FILLS 1024
 
 static Fill *find_fill(Fill *fills, const FlInk *ink, const FlColouring *colouring,

@@ -59,8 +59,8 @@ void fl_colourise(const FlInk *ink, const FlColouring *colouring, const FlPainte
                   const int16_t *amounts, const FlArea *area, uint8_t *rgba);
 
 /**
- * What is drawn and not painted, as opaque paint: the picture's colours, or the flat one if NULL.
- * picture and coverage are of the box. Pixels without coverage stay as they are.
+ * Colours shapes that are drawn and not painted, as opaque paint: the picture's colours, or the
+ * flat one if NULL. picture and coverage are of the box. Pixels without coverage stay as they are.
  */
 void fl_colourise_plain(const uint8_t *picture, const uint8_t flat[3], const uint8_t *coverage,
                         const FlArea *area, uint8_t *rgba);

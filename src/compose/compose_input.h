@@ -8,11 +8,12 @@
 #include "compose/paper_sheet.h"
 #include "drawing/drawing.h"
 
-/** What wet paint has left on the paper: a layer below all paint but that of the ground. */
+/** The stain that wet paint has left on the paper: a layer below all paint but that of the
+ * ground. */
 typedef struct FlStainLayer {
     FlRect box;
-    uint8_t *rgba;      // of the box, straight, over the paper; NULL: nothing
-    const bool *ground; // by region: whether the stain lies over it
+    uint8_t *rgba;      // of the box, straight, over the paper; NULL: no stain
+    const bool *ground; // by region: true if the stain lies over it
 } FlStainLayer;
 
 /** The painted regions of a frame and how they are stacked. Everything is borrowed. */
@@ -22,7 +23,7 @@ typedef struct FlComposeInput {
     int n_painted;
     const FlPaintedRegion *const *painted;
     const FlBackground *background;
-    const FlPaperSheet *sheet; // of paper; NULL: none
+    const FlPaperSheet *sheet; // of paper; NULL: no sheet
     FlTooth tooth;             // of the frame, in the size of the drawing
     uint64_t seed;             // of what is uneven
     int width, height;         // of the frame, px

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #define NO_DRAW (-1)
-#define STAIN "paper_stain" // no region's name has such a line in it
+#define STAIN "paper_stain" // region names have no underscore
 #define BLEED_PX 8          // reach of colours into transparency, for frames that are scaled later
 
 /* The layers of a frame. */
@@ -30,7 +30,7 @@ static char *layer_name(const FlComposeInput *input, const FlDrawList *draws, in
     return earlier == 0 ? g_strdup(name) : g_strdup_printf("%s-%d", name, earlier + 1);
 }
 
-/* The stain, in the size of the frame; as a glaze if the ground lies below it. */
+/* The stain, in the size of the frame; as a glaze if it lies on the ground. */
 static bool stain_layer(const Stack *stack, int k, GError **error)
 {
     const FlStainLayer *stain = stack->sources.input->stain;

@@ -5,8 +5,8 @@
 #include "compose/compose_input.h"
 #include "compose/layers.h"
 
-/** A frame in the making, and what it is made of. The layers recompose to the frame bit for bit
- * where no paper has light; else the frame is that times the light of the sheet. */
+/** A frame in the making, and its parts. The layers recompose to the frame bit for bit where no
+ * paper has light; else the frame is that times the light of the sheet. */
 typedef struct FlComposite {
     FlDrawList *draws;
     int n_layers;     // 0: not wanted apart

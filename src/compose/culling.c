@@ -24,8 +24,8 @@ static bool window_init(Window *window, const FlLayer *layer, const FlLayersAbov
     return window->hidden != NULL;
 }
 
-/** Takes out of hidden what row y of the frame shows in columns first … last - 1 of the box; beyond
- * the frame nothing is seen. Returns: whether anything stays hidden. */
+/** Takes out of hidden what row y of the frame shows in columns first … last - 1 of the box; pixels
+ * beyond the frame are not seen. Returns: true if any pixel stays hidden. */
 static bool look_at_row(const Window *window, int y, int first, int last)
 {
     const FlLayersAbove *above = window->above;

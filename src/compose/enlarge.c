@@ -20,7 +20,8 @@ static float value_of(const Picture *picture, size_t k)
 }
 
 /** Adds a row of the page, times its weight: colours times alpha, and alpha, of the box's columns
- * and one on either side. Beyond the page its last row goes on; beyond the box there is none. */
+ * and one on either side. Beyond the page its last row goes on; beyond the box there are no
+ * pixels. */
 static void add_row(const Picture *picture, int y, float weight, float *sums)
 {
     const FlRect box = picture->box;
@@ -95,7 +96,7 @@ static bool enlarge(void **rgba, Picture picture, GError **error)
     return large && fl_parallel_error_propagate(error, first);
 }
 
-/** A box of the page in the frame, with the pixels that mix with it. */
+/** A box of the page in the frame, including the pixels that mix with the box. */
 static FlRect doubled(FlRect box, FlRect frame)
 {
     const FlRect twice = {2 * box.x - 1, 2 * box.y - 1, 2 * box.width + 2, 2 * box.height + 2};

@@ -1,4 +1,4 @@
-/* Composed pages in the size of the frames: those of drafts have half of it. */
+/* Enlarges composed pages to the size of the frames: pages of drafts have half that size. */
 #ifndef FLUIDY_COMPOSE_ENLARGE_H
 #define FLUIDY_COMPOSE_ENLARGE_H
 

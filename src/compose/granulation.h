@@ -9,7 +9,7 @@
  * Changes the amounts of paint of an area by the tooth of the paper below them; those below 0 stay.
  *
  * granulation is -1..1. Above 0 paint is wet and settles in hollows, least where it is thick; below
- * 0 it is dry, catches on peaks and leaves hollows bare. 0 or a flat tooth: nothing happens. The
+ * 0 it is dry, catches on peaks and leaves hollows bare. 0 or a flat tooth: the amounts stay. The
  * mean amount stays to within 2 % up to .2.
  */
 void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t *amounts);

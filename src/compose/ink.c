@@ -155,7 +155,7 @@ void fl_ink_free(FlInk *ink)
     g_free(ink);
 }
 
-/** Counts a row of n pixels: most, where `inner` says so; less, where `near` does. */
+/** Counts a row of n pixels: fully where `inner` is set, less where `near` is set. */
 static void count_row(const FlInk *ink, const uint8_t *rgb, const uint8_t *coverage,
                       const uint8_t *near, const uint8_t *inner, int n, FlAmountCounts *h)
 {

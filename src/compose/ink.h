@@ -43,7 +43,7 @@ static inline void fl_count_amount(FlAmountCounts *counts, int amount, uint32_t 
 typedef struct FlInk {
     uint8_t paper[3];     // sRGB of the exemplar's bare paper
     int32_t part[3][256]; // amount * 256 that a level of a channel adds
-    int32_t toe;          // amounts below this bend down, to 0 at toe_end; 0: none do
+    int32_t toe;          // amounts below this bend down, to 0 at toe_end; 0: no amount does
     int32_t toe_end;      // 0 … toe
     int32_t toe_share;    // of the bend that is taken, 0 … FL_AMOUNT_ONE
     int32_t shoulder;     // amounts above one end at one plus this; 0: no end

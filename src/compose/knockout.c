@@ -6,7 +6,7 @@
 
 #define PART(x) (FL_AMOUNT_ONE * (x) / 10)
 
-/** Paint hides nothing up to an amount, and all from another one on. */
+/** Paint is transparent up to an amount, and hides all from another one on. */
 typedef struct Ramp {
     int none, all;
 } Ramp;
@@ -100,7 +100,7 @@ static void find_inside(const uint8_t *coverage, int width, int height, FlRect b
     }
 }
 
-/** A part of the box in which there is some of the shape, and room for what is around it. */
+/** A part of the box that contains some of the shape, and a margin around that part. */
 typedef struct Tile {
     FlRect own, around; // around: with all that its windows hold; of the box, as own is
     int16_t *inside;    // of around

@@ -1,4 +1,4 @@
-/* The paint of a frame as it was laid, before others went over it; later it may stain the paper. */
+/* The uppermost paint of a frame, which may stain the paper in later frames. */
 #ifndef FLUIDY_COMPOSE_LAID_H
 #define FLUIDY_COMPOSE_LAID_H
 
@@ -9,7 +9,7 @@ typedef struct FlLaid {
     int width, height; // cells
     float cell_px;     // px of the frame per cell
     uint8_t *rgb;      // width * height * 3: its paint over bare paper
-    int16_t *region;   // width * height: whose paint it is; -1: none
+    int16_t *region;   // width * height: the region whose paint it is; -1: no paint
 } FlLaid;
 
 bool fl_laid_init(FlLaid *laid, int width, int height, float cell_px, GError **error);

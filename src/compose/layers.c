@@ -159,7 +159,7 @@ static void sum_over(const FlSums *sums, const FlTransfer *scale, const uint8_t 
     }
 }
 
-#define OPAQUE (65535 * 255) // the alpha of a sum with nothing left to show through
+#define OPAQUE (65535 * 255) // the alpha of a sum through which no lower layer shows
 
 static Sum sum_at(const FlSums *sums, int i)
 {
@@ -219,7 +219,7 @@ static void sum_backdrop(const FlBackdrop *backdrop, const FlTransfer *scale, in
             planes[k][x] = planes[k][0];
 }
 
-/** Lays the density of a glaze over what lies below it: the layer's pixel that does so. */
+/** The layer's pixel that adds the density of a glaze to the colour below. */
 static void glaze_pixel(const Sum *below, const FlTransfer *scale, const uint8_t *paper,
                         uint8_t *rgba)
 {
@@ -234,7 +234,7 @@ static void glaze_pixel(const Sum *below, const FlTransfer *scale, const uint8_t
     memcpy(rgba, lifted, 4);
 }
 
-/** Gives a pixel of a layer with a blend mode the colour that is right over what lies below it. */
+/** Gives a pixel of a layer with a blend mode the blended colour over the colour below. */
 static void blend_pixel(const Sum *below, int drawn, const FlTransfer *scale,
                         FlBlendMode blend_mode, uint8_t *rgba)
 {

@@ -33,8 +33,8 @@ typedef struct FlLayer {
     FlFade fade;             // owned by the caller
     bool sheer;              // drawn by hand: what lies below is seen through its grain
     uint8_t alpha;           // opacity of the layer, 255 opaque
-    FlStacking stacking;     // a layer with a blend mode hides nothing, whatever this says
-    FlBlendMode blend_mode;  // with what is below it
+    FlStacking stacking;     // a layer with a blend mode hides no pixels, whatever this says
+    FlBlendMode blend_mode;  // with the layers below
 } FlLayer;
 
 /** Returns: true if a layer knocks out the layers below. */

@@ -144,7 +144,8 @@ static int darkness_of(const FlColouring *colouring)
     return 255 * MAX(paper - luma(colouring->fill), 0) / paper;
 }
 
-/* Knockout is of the amounts before the paper's grain, which else would punch holes into it. */
+/* Knockout is of the amounts before the paper's grain, which would otherwise punch holes into the
+ * layer. */
 static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
                         const FlPaintedRegion *painted, int exposure, GError **error)
 {

@@ -13,7 +13,7 @@ typedef struct FlLayerSources {
     const FlCover *cover;       // of the frame
     const int *exposures;       // of each painted region
     const double *areas;        // of each region, px
-    const FlLayersAbove *above; // that cull it; NULL: it stays whole
+    const FlLayersAbove *above; // that cull the layer; NULL: the layer stays whole
 } FlLayerSources;
 
 /** The stacking of a region. Cut out paint hides by its own alpha alone, and does not knock out. */
@@ -23,7 +23,8 @@ FlStacking fl_stacking_of(const FlPaintedRegion *painted);
  * from the draw. */
 void fl_layer_begin(FlLayer *layer, const FlLayerSources *sources, int draw);
 
-/** Paints it: rgba and knockout as fl_layers_resolve() takes them. FL_ERROR_NO_MEMORY. */
+/** Paints the layer: rgba and knockout in the form that fl_layers_resolve() takes.
+ * FL_ERROR_NO_MEMORY. */
 bool fl_layer_paint(FlLayer *layer, const FlLayerSources *sources, int draw, GError **error);
 
 /** Frees all that a layer owns. */

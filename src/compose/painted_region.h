@@ -19,7 +19,7 @@ typedef struct FlStyleInstance {
     bool reverse;
     FlExemplar *exemplar;
     FlInk *ink;
-    struct FlSliced *patches; // of its ink, which transport refines by; NULL: not needed
+    struct FlSliced *patches; // of its ink, for the refinement of transport; NULL: not needed
     FlMedium medium;
     float granulation; // as of fl_granulate()
     FlFrontStyle front;
@@ -41,15 +41,15 @@ typedef enum FlPaintOrigin {
 typedef struct FlPaintedRegion {
     int region;                       // index into the drawing's regions
     const char *name;                 // borrowed, as settings and style are
-    const FlRegionSettings *settings; // how it is painted
+    const FlRegionSettings *settings; // settings of its painting
     const FlStyleInstance *style;     // with what
     int width, height;                // of the drawing as it is painted, px
-    FlAnchor anchor;                  // of the region in the frame that the picture is of
+    FlAnchor anchor;                  // of the region in the picture's frame
     int exposure;                     // of its amounts; 0: as the paint itself asks for
     FlRect rect;                      // the part of it in which the region ever is, with some room
     uint8_t *painted;   // of rect: 3 bytes of sRGB a pixel, the exemplar's colours; NULL: not open
     uint8_t *alpha;     // of rect, behind them in one piece; NULL: paint is on paper
-    float reach_px;     // how far alpha goes beyond the shape; 0: there is none
+    float reach_px;     // distance that alpha reaches beyond the shape; 0: no alpha
     GBytes *packed;     // both, while they are not open; NULL: there is no picture yet
     FlFrameStats stats; // of the last frame that was painted, as is what follows
     FlSynthView view;   // nnf NULL: not needed

@@ -26,9 +26,9 @@ typedef struct FlPaperGrain {
     float fibre;                        // weight of fibres in the height
     float fibres, fibre_px;             // their number in 1000 square px, their length
     float fibre_mean, fibre_dev;        // of what they cover, as drawn
-    float laid, line;                   // weight of laid lines and their distance; 0: none
+    float laid, line;                   // weight of laid lines and their distance; 0: no lines
     float mean, dev, slope_dev;         // of the height, and of its slope once it is normalised
-    float fine_dev;                     // of what is finer than 4 px in it
+    float fine_dev;                     // of its structures finer than 4 px
     float relief, cloud, streak, warm;  // shares of light: of the relief, of slow clouds, of
                                         // fibres, and of blue that comes and goes
     float flecks;                       // darkness of flecks; 0: the paper has no flecks

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-#define FINE_PX 4       // what is wider belongs to no tooth
+#define FINE_PX 4       // wider structures are not part of the tooth
 #define TOOTH_END 2.2f  // standard deviations
 #define SLOW_PX 8       // clouds and warmth are known every so many px
 #define ROOM_PX 256     // that the sheet is larger than a frame if other parts of it are wanted
@@ -188,8 +188,8 @@ static void fill_by_means(FlPaperSheet *sheet, const FlPaperSheet *large, int n)
         }
 }
 
-/* A sheet whose grain is finer than its px would be another one, of noise: it is made n times as
- * large, and its px are means of that. */
+/* A sheet whose grain is finer than its px would be another one, of noise: the sheet is made n
+ * times as large and then averaged. */
 static int finer(const FlPaperSheet *sheet, float scale)
 {
     const double pixels = (double)sheet->width * sheet->height;
@@ -227,7 +227,7 @@ const uint8_t *fl_paper_ground(const char *paper)
     return grain->tinted ? grain->colour : NULL;
 }
 
-/* *kind becomes a word's, or -1 for a file or none. */
+/* *kind becomes a word's, or -1 for a file or "none". */
 static bool kind_of(const char *paper, int *kind, GError **error)
 {
     *kind = g_str_equal(paper, "auto") ? FL_PAPER_COLD : -1;

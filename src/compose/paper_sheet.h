@@ -20,7 +20,7 @@ typedef struct FlPaperChoice {
 
 /**
  * A sheet of paper, made once for a film. Every frame has the same part of it; with boil, parts
- * that are taken by chance.
+ * that are chosen at random.
  */
 typedef struct FlPaperSheet {
     int width, height; // the frame's, and with boil some room
@@ -29,7 +29,8 @@ typedef struct FlPaperSheet {
     int8_t *tooth;     // width * height: the fine part of the height
     int boil;
     uint64_t seed;
-    bool lights; // the frames are multiplied by it: said, or there is no other background
+    bool lights; // the frames are multiplied by the sheet: requested, or no other background is
+                 // given
 } FlPaperSheet;
 
 /** The word for a paper that is made and tinted, and so is the ground of a film: its colour. */
@@ -71,8 +72,8 @@ bool fl_paper_sheet_light(const FlPaperSheet *sheet, int frame, int width, int h
                           uint8_t *rgba, uint16_t *rgba16, GError **error);
 
 /**
- * The light of a frame's sheet as an opaque picture to multiply by: level 240 stands for one, since
- * the light is above and below it. rgba: width * height * 4.
+ * The light of a frame's sheet as an opaque picture that multiplies the frame: level 240 stands for
+ * one, since the light is above and below one. rgba: width * height * 4.
  */
 bool fl_paper_sheet_picture(const FlPaperSheet *sheet, int frame, int width, int height,
                             uint8_t *rgba, GError **error);

@@ -62,7 +62,7 @@ static void lower_row(int16_t *row, int width)
         row[x] = least(row[x], (int16_t)(row[x + 1] + SIDE));
 }
 
-/** The same of the row before or after it. */
+/** The same for the row before or after. */
 static void lower_from(const int16_t *beside, int16_t *restrict row, int width)
 {
     for (int x = 0; x < width; x++)

@@ -37,7 +37,7 @@ typedef struct Places {
 
 typedef void (*SlowNoise)(uint64_t key, const Places *at, float *noise);
 
-/* As the brush is emptied and filled again, here and there. */
+/* Models a brush that empties and is refilled at irregular places. */
 static void load_noise(uint64_t key, const Places *at, float *noise)
 {
     Places wide = {.n = at->n}, bent = {.n = at->n};
@@ -150,7 +150,8 @@ static Points make_points(const FlUneven *where, const FlArea *area, const int16
     return points;
 }
 
-/* n pixels of a row between two points, of which left and right are what the row has there. */
+/* Interpolates n pixels of a row between two points, at which the row has the values left and
+ * right. */
 static inline void fill_square(int32_t left, int32_t right, int step, int n, int16_t *row)
 {
     const int one = 4096 / FL_PLAY_ONE * step * step;
@@ -173,7 +174,7 @@ static void fill_row(const Points *points, const FlArea *area, int y, const int1
         const int n = square_px(points, area, i);
         if (!any_paint(amounts + i * step, n))
             continue;
-        if (step == STEP) // a constant step needs no division; that of drafts is half of it
+        if (step == STEP) // a constant step needs no division; drafts have half the step
             fill_square(left, right, STEP, n, row + i * step);
         else if (step == STEP / 2)
             fill_square(left, right, STEP / 2, n, row + i * step);
@@ -184,7 +185,7 @@ static void fill_row(const Points *points, const FlArea *area, int y, const int1
 
 /* ---- load and pigments ----------------------------------------------------------------------- */
 
-/* Of a region of 60 px a side and more all of it, at 20 px nothing. */
+/* The full effect for regions of 60 px a side and more; 0 at 20 px. */
 static float share_of_size(const FlUneven *where)
 {
     const float side = (float)sqrt(where->area) / where->scale;

@@ -17,15 +17,15 @@ typedef struct FlUneven {
 } FlUneven;
 
 /**
- * Multiplies the amounts of paint of an area by a slow factor around one: load 0..1 is how far it
- * goes. Small regions, which are one touch of the brush, have less of it.
+ * Multiplies the amounts of paint of an area by a slow factor around one: load 0..1 is the
+ * strength. Small regions, which are one touch of the brush, vary less.
  */
 void fl_load_unevenly(const FlUneven *where, float load, const FlArea *area, int16_t *amounts);
 
 #define FL_PLAY_ONE 64 // twice the standard deviation of the play of two pigments
 
-/** The balance of two pigments in each pixel of an area: -2 to below 2, in 1 / FL_PLAY_ONE. play
- * is of the box, as amounts are; where these are below 0 it means nothing. */
+/** The balance of two pigments in each pixel of an area: -2 to below 2, in 1 / FL_PLAY_ONE. play is
+ * of the box, as amounts are; where these are below 0 it is undefined. */
 void fl_play_of_pigments(const FlUneven *where, const FlArea *area, const int16_t *amounts,
                          int8_t *play);
 

@@ -18,7 +18,7 @@ void fl_cover_hide(const FlArea *area, const uint8_t *coverage, int opacity, FlR
 
 /** The way in which shapes hide those below them. */
 typedef struct FlHiding {
-    const bool *sheer; // by region: true if one sees through it, as through glazes; NULL: all hide
+    const bool *sheer; // by region: true if it is transparent, such as a glaze; NULL: all hide
     int rim_px;        // a rim of this width inside the contour may be bare of paint, and one sees
                        // through it; 0: a shape hides by its coverage alone
 } FlHiding;

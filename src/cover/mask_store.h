@@ -21,13 +21,13 @@ bool fl_mask_store_put(FlMaskStore *masks, int region, int frame, const uint8_t 
 bool fl_mask_store_put_part(FlMaskStore *masks, int region, int frame, const uint8_t *coverage,
                             FlRect part, GError **error);
 
-/** Reads `part` of a mask, part.width * part.height bytes; all 0 if none was stored. */
+/** Reads `part` of a mask, part.width * part.height bytes; all 0 if no mask was stored. */
 bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect part,
                        uint8_t *coverage, GError **error);
 
 /** A mask of width * height in the size of fl_half_side(): the mean of 2x2 coverages, those of the
- * last column and row again where there are no more. A pixel is inside where one of the four is, so
- * that nothing is lost. half may be the mask. */
+ * last column and row again where there are no more. A pixel is inside if one of its four is, so
+ * that thin parts are not lost. half may be the mask. */
 void fl_mask_halve(const uint8_t *mask, int width, int height, uint8_t *half);
 
 /** The same in half the size, fl_rect_halved(part), by fl_mask_halve(). */

@@ -5,14 +5,14 @@
 #include "cover/cover_map.h"
 #include <string.h>
 
-#define REACH 24 // a shape counts this share of the larger side around what is seen of it
+#define REACH 24 // a shape counts this share of the larger side around its visible part
 
 /** The planes of a region; one of the whole frame follows those of all regions. */
 typedef enum Kind {
     MASK,     // its coverage
-    TOGETHER, // blank: nothing is like it
-    CLOSED,   // near to it; blank: nothing is beside it
-    SEEN,     // blank: nothing lies over it
+    TOGETHER, // blank: no other shape has its colour
+    CLOSED,   // near the region; blank: no neighbours
+    SEEN,     // blank: the region is not covered
     N_KINDS,
 } Kind;
 
@@ -118,7 +118,7 @@ static void add_plane(const FlDraw *draw, const uint8_t *plane, FlRect part, int
 
 /**
  * The coverage of a draw as far as it is seen within reach_px: a neck goes on below a collar. The
- * less of it is seen there the less it counts, so that nothing comes or goes at once.
+ * less of it is seen there the less it counts, so that no shape comes or goes abruptly.
  */
 static uint8_t *near_seen(const FlCover *cover, int draw, int reach_px, GError **error)
 {
@@ -190,7 +190,8 @@ static bool put(const FlSurround *surround, const Frame *frame, Kind kind, int r
                                   frame->coverage, part, error);
 }
 
-/** The part of a frame on which a region's rim may depend: more than three borders around it. */
+/** The part of a frame on which a region's rim may depend: more than three borders around the
+ * region. */
 static FlRect near_region(const FlSurround *surround, FlRect box)
 {
     const FlRect page = {0, 0, surround->width, surround->height};

@@ -25,24 +25,25 @@ bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, c
 
 /** The surroundings of a region, planes of a part of a frame. */
 typedef struct FlSurroundPlanes {
-    float joined; // how far shapes of its colour are there: 0: there are none, 1: they are opaque;
-                  // see fl_neighbours_edge()
-    float bordered;    // how far shapes beside it are there, likewise
-    bool hidden;       // whether anything lies over it and those of its colour
+    float joined;      // presence of shapes of its colour, 0: absent .. 1: opaque;
+                       // see fl_neighbours_edge()
+    float bordered;    // the same for the shapes that border on the region
+    bool hidden;       // true if a shape lies over it and those of its colour
     uint8_t *together; // the region and those of its colour, near to where they are seen
-    uint8_t *closed;   // these and the ones beside it, hidden or not; if there are any
-    uint8_t *seen;     // what is seen of those together; if anything lies over them
-    uint8_t *shown;    // the coverage of all shapes
+    uint8_t *closed; // `together` and the bordering shapes, hidden or not; set if such shapes exist
+    uint8_t *seen;   // the visible part of `together`; set if `hidden`
+    uint8_t *shown;  // the coverage of all shapes
 } FlSurroundPlanes;
 
 /** Returns: true if a region shares edges with any shape. */
 bool fl_surround_joins(const FlSurround *surround, int region, int frame);
 
-/** Whether the shapes with which a region shares edges are the same in two frames, near to it,
- * whatever else moves there. */
+/** Returns: true if the shapes that share edges with a region are the same near it in two frames,
+ * whatever other shapes move there. */
 bool fl_surround_joins_as_in(const FlSurround *surround, int region, int a, int b);
 
-/** Where they are not: differs, a byte a pixel of `part`, is 0 where they are. */
+/** Marks the pixels at which these shapes differ: differs, a byte a pixel of `part`, is 0 where
+ * they are the same. */
 bool fl_surround_differs(const FlSurround *surround, int region, int a, int b, FlRect part,
                          uint8_t *differs, GError **error);
 

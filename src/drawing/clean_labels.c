@@ -14,7 +14,7 @@ typedef struct Stem {
     bool steady; // not a frame number
 } Stem;
 
-/** The label with its last run of digits replaced by '#'; NULL if it has none. */
+/** The label with its last run of digits replaced by '#'; NULL if it has no digits. */
 static char *stem_of(const char *label, int *number)
 {
     size_t end = strlen(label);

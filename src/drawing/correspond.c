@@ -213,8 +213,8 @@ static bool is_held(const Pair *p)
 }
 
 /**
- * Whether one outline is the beginning or a part of the other: a line that draws itself, a shape
- * that ink is added to, or the reverse. What is painted then stays where it is.
+ * Returns: true if one outline is the beginning or a part of the other: a line that draws itself, a
+ * shape that ink is added to, or the reverse. What is painted then stays where it is.
  */
 static bool grows(const Pair *p, bool same)
 {

@@ -10,11 +10,11 @@ typedef enum FlMotionKind {
     FL_MOTION_STILL,      // its outline is where it was
     FL_MOTION_AFFINE,     // one map took all of it here
     FL_MOTION_SAME,       // segment by segment
-    FL_MOTION_REGISTERED, // there before, in another structure: only masks can show it
+    FL_MOTION_REGISTERED, // there before, in another structure: only masks can show the motion
 } FlMotionKind;
 
 typedef struct FlLeafMotion {
-    int before; // index of the leaf in the frame before; -1: none
+    int before; // index of the leaf in the frame before; -1: not paired
     FlMotionKind kind;
     FlAffine back; // AFFINE: from px of this frame to px of the one before
 } FlLeafMotion;

@@ -8,8 +8,8 @@
 #define CONTOUR_PX 2 // as wide as coverage rises at a contour
 
 /**
- * Whether a pixel that is less than half covered belongs to a shape that fades, as a glow or a
- * blurred shadow does: it is not at a contour, for all around it on the page is seen.
+ * Returns: true if a pixel that is less than half covered belongs to a shape that fades, such as a
+ * glow or a blurred shadow: it is not at a contour, for all around it on the page is seen.
  */
 static bool fades(const FlDraw *draw, FlRect page, int x, int y)
 {
@@ -32,7 +32,8 @@ static bool is_faint(uint8_t coverage)
     return (uint8_t)(coverage - 1) < HALF - 1;
 }
 
-/** A row over what is below it. Returns: true if some pixel of it is less than half covered. */
+/** Adds a row over the rows of lower draws. Returns: true if a pixel of the row is less than half
+ * covered. */
 static bool put_over(const uint8_t *from, FlColumns span, uint8_t *restrict to)
 {
     uint8_t any = 0;

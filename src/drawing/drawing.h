@@ -39,19 +39,19 @@ typedef struct FlDrawingOptions {
 /** A region: the leaves that are one area of paint through the whole drawing. */
 typedef struct FlRegion {
     char *name;       // unique, made of [a-z0-9-], stable for the same input; used in file names
-    char *label;      // the layer label path without frame numbers; "" if the drawing has none
+    char *label;      // the layer label path without frame numbers; "" without labels
     char *paint;      // "#rrggbb", "gradient", "image": of most of its area
     int n_present;    // frames in which it is drawn
     int first_frame;  // index of the first of them
     double area_px;   // mean area over those frames
     int n_leaves;     // most leaves it had in a frame
     bool paintable;   // false: drawn unpainted over the paint (strokes, shading overlays)
-    int rule;         // index of the rule that made it, -1: none
-    char *class_word; // a class that all of its shapes have, and no others; NULL: none
+    int rule;         // index of the rule that made the region; -1: no rule did
+    char *class_word; // a class that all of its shapes have, and no others; NULL: no such class
 } FlRegion;
 
-/** A place that moves along with a region and turns with it, so that what is uneven in its paint
- * can do the same. */
+/** A place that moves along with a region and turns with the region, so that unevenness of its
+ * paint can follow. */
 typedef struct FlAnchor {
     float x, y;         // px of the picture, within FL_POSE_MOST_PX
     float cosine, sine; // of its turn since the first frame
@@ -79,7 +79,7 @@ const FlRegion *fl_drawing_region(const FlDrawing *drawing, int region);
 GHashTable *fl_drawing_linked_files(const FlDrawing *drawing);
 
 /** A sentence about the frames that are held or skipped since they cannot be read or drawn; to be
- * freed. NULL: there are none. */
+ * freed. NULL: all frames were read. */
 char *fl_drawing_left_out(const FlDrawing *drawing, FlMissing missing);
 
 /** The common part of the files' names, such as "walk"; for naming the output. */
@@ -94,7 +94,7 @@ const char *const *fl_drawing_found_files(const FlDrawing *drawing);
 
 /**
  * The frame whose picture is shown: `frame` itself, unless a missing frame is held there; then the
- * first of those that show the same.
+ * first of the frames that show the same picture.
  */
 int fl_drawing_shown(const FlDrawing *drawing, int frame);
 
@@ -136,7 +136,7 @@ FlDrawList *fl_drawing_unpack_draws(const FlDrawing *drawing, GBytes *packed, GE
 void fl_draw_list_mask(const FlDrawList *draws, int region, int width, int height,
                        uint8_t *coverage);
 
-/** The same into a plane that is 0. Returns: a rectangle beyond which it stays so. */
+/** The same into a plane that is 0. Returns: a rectangle beyond which the plane stays 0. */
 FlRect fl_draw_list_put_mask(const FlDrawList *draws, int region, int width, int height,
                              uint8_t *coverage);
 

@@ -36,7 +36,7 @@ struct FlDrawing {
     GArray *regions;   // FlRegion
     GHashTable *files; // real paths of what the drawings refer to
     GMutex mutex;      // of what is kept
-    GBytes **kept;     // draw lists without a hand by FlDrawingFrame.origin, packed; NULL: none
+    GBytes **kept;     // draw lists without a hand by FlDrawingFrame.origin, packed; NULL: not kept
     int n_kept;        // entries of `kept`
     size_t kept_bytes;
 };

@@ -8,7 +8,7 @@ static void insert(GArray *draws, int at, FlDraw *draw)
     *draw = (FlDraw){.region = draw->region}; // its pictures were moved
 }
 
-/** Index of the last draw of a region, -1 if it has none. */
+/** Index of the last draw of a region; -1 if the region has no draw. */
 static int last_of(const GArray *draws, int region)
 {
     for (int r = (int)draws->len - 1; r >= 0; r--)

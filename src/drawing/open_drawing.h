@@ -17,7 +17,7 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
                                    GError **error);
 
 /**
- * The frames that the options name, found by their files' names; none is read.
+ * The frames that the options name, found by their files' names; the files are not read.
  *
  * Returns: to be freed with fl_sequence_free(); NULL with FL_ERROR_USAGE or FL_ERROR_INPUT.
  */

@@ -15,7 +15,7 @@ FlOutlines *fl_drawing_outlines(const FlDrawing *drawing, int frame, GError **er
     return outlines;
 }
 
-/** Calls for the leaf of a step, or for all that are drawn as one with it. */
+/** Calls for the leaf of a step, or for all leaves that are drawn together. */
 static void add_leaves(const FlDrawStep *step, const FlOutlines *outlines, GArray *list)
 {
     const int unit = -1 - step->leaf;

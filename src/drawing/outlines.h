@@ -10,7 +10,7 @@ typedef struct FlRegionLeaf {
     int leaf; // index into the frame's outlines
     FlPart part;
     float box[4];   // x0, y0, x1, y1 of what librsvg draws of it, px
-    uint8_t rgb[3]; // its paint, or the mean of it
+    uint8_t rgb[3]; // its paint, or the mean colour
     bool flat;
 } FlRegionLeaf;
 

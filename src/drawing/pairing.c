@@ -8,7 +8,7 @@
  * keep; the rest is paired greedily, since a figure that turns swaps its limbs.
  */
 #define MANY 2000     // leaves from which on the alignment keeps to a band
-#define MOST 10000    // beyond it none are paired: the table would not fit
+#define MOST 10000    // beyond it leaves are not paired: the table would not fit
 #define BAND 40       // beside the diagonal, and the difference in number
 #define LEFT_OVER 0.5 // least score of a pair out of order
 #define TOO_MANY 3000 // left over on a side: not paired
@@ -91,7 +91,7 @@ static void pair(Pairing *w, int i, int j)
     w->paired[i] = true;
 }
 
-/** Aligns two lists of leaves; gaps cost nothing. */
+/** Aligns two lists of leaves; gaps are free. */
 static void align(Pairing *w, const int *before, int n, const int *now, int m)
 {
     if (n > MOST || m > MOST)

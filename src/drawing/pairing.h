@@ -16,8 +16,8 @@ FlLeafMeasure *fl_measure_leaves(const FlOutlines *outlines);
 double fl_measure_diagonal(const FlLeafMeasure *m);
 
 /**
- * Which leaf before each leaf of now was; -1: none. Where all agree by number, name, place and
- * structure they are paired one to one.
+ * Pairs each leaf of now with a leaf before; -1: not paired. Where all agree by number, name, place
+ * and structure they are paired one to one.
  *
  * Returns: by leaf; to be freed with g_free().
  */

@@ -89,7 +89,8 @@ const char *const *fl_drawing_found_files(const FlDrawing *drawing)
     return (const char *const *)drawing->sequence->found;
 }
 
-/* Frames that are held before the first one that is there stand for it, and it is like them. */
+/* Missing frames at the start of the film show the first frame that exists, so that all of these
+ * are the same. */
 int fl_drawing_shown(const FlDrawing *drawing, int frame)
 {
     const FlSequence *s = drawing->sequence;

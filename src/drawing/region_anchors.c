@@ -17,7 +17,7 @@ typedef struct Leaf {
     const FlSurveyPart *part; // last seen; NULL: not yet
     int frame;                // of that
     int steps, same;          // times it is seen again; of these with as many nodes
-    bool shared; // two leaves have its number, since regions were merged: it says nothing
+    bool shared; // two leaves have its number, since regions were merged: the number is ambiguous
 } Leaf;
 
 /* Places of leaves before and after a step, weighted by area. */
@@ -95,8 +95,8 @@ static void add_turn(Fit *fit, double weight, FlPoint from, FlPoint to)
 #define HELD_PX 0.1 // of a side of a box that stays where it is
 #define GROWN_PX 1  // of one that moves on
 
-/* True if a leaf has grown on one side, held the other, and shrunk on none; page: its width and
- * height, at whose edges nothing can be told. */
+/* True if a leaf has grown on one side, held the other, and not shrunk on any; page: its width and
+ * height. False at the page's edges, which may cut the leaf off. */
 static bool has_grown(const float before[4], const float now[4], const float page[2])
 {
     bool grown = false, shrunk = false;

@@ -13,7 +13,7 @@
 /** Sums over a region, which decide what it is. */
 typedef struct Sum {
     double area, covered, alpha;
-    bool plain;  // not all of it is mixed with what is below it
+    bool plain;  // not all of it blends with the leaves below
     double best; // area of the paint of the group so far
 } Sum;
 
@@ -154,8 +154,8 @@ static void find_hairlines(Work *w)
 }
 
 /**
- * Whether a part is a line that is drawn over the paint. Thick strokes are limbs, and painted;
- * hairlines never, as no pixel is theirs for paint to be in.
+ * Returns: true if a part is a line that is drawn over the paint. Thick strokes are limbs, and
+ * painted; hairlines never, as no pixel is theirs for paint to be in.
  */
 static bool is_apart(const Work *w, const FlSurveyPart *s, int track)
 {
@@ -179,8 +179,8 @@ static int common_frames(const FlTrack *a, const FlTrack *b)
 }
 
 /**
- * Whether a track belongs to another one, whose paint varies: theirs change together; or its own
- * does not change, as it is short, and the other's jitters.
+ * Returns: true if a track belongs to another one, whose paint varies: theirs change together; or
+ * its own does not change, as it is short, and the other's jitters.
  */
 static bool is_twin(const Work *w, int j, int k)
 {

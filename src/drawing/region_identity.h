@@ -1,5 +1,4 @@
-/* Which leaves are the same region in every frame: tracks of leaves, their nesting, and the names.
- */
+/* Groups the leaves of all frames into regions: tracks of leaves, their nesting, and the names. */
 #ifndef FLUIDY_DRAWING_REGION_IDENTITY_H
 #define FLUIDY_DRAWING_REGION_IDENTITY_H
 
@@ -33,7 +32,7 @@ typedef struct FlTrack {
     int last_frame;
     bool varies;    // its paint changed
     uint8_t rgb[3]; // of the first frame that has it
-    float drift;    // CIE76 by which its paint was farthest from that
+    float drift;    // largest CIE76 distance of its paint from this colour
     GArray *paints; // int pairs: frame, paint (a string number); ascending frames
 } FlTrack;
 
@@ -46,8 +45,9 @@ typedef struct FlTrack {
 GArray *fl_leaf_tracks_find(const FlSurvey *survey, const int *label_of, int ***track_of);
 
 /**
- * How deep each track lies in others of its paint: 0 for one that lies on no other, or not all the
- * time, or that is small. As one region such leaves would hide each other in the whole-shape mask.
+ * The nesting depth of each track in others of its paint: 0 for one that lies on no other, or not
+ * all the time, or that is small. As one region such leaves would hide each other in the
+ * whole-shape mask.
  *
  * Returns: n_tracks levels, to be freed.
  */

@@ -23,7 +23,7 @@ typedef struct FlRegionRule {
     const char *const *match_label;  // globs over labels, likewise
     const char *const *match_layer;  // globs over layers; without layers over the outermost group
     float tolerance;                 // of colours, CIE76; 0: 1
-    const char *merge_with;          // the region that this one becomes a part of; NULL: none
+    const char *merge_with;          // the region into which this one is merged; NULL: not merged
     FlPassthrough passthrough;
     bool by_name; // matches no leaf, but regions whose names, without any rule, match this glob
 } FlRegionRule;
@@ -44,7 +44,7 @@ typedef struct FlRuleSubject {
  */
 bool fl_rules_check(const FlRegionRule *rules, int n, GError **error);
 
-/** Returns: the index of the first rule that matches, -1 if none does. */
+/** Returns: the index of the first rule that matches; -1 if no rule does. */
 int fl_rules_match(const FlRegionRule *rules, int n, const FlRuleSubject *subject);
 
 #endif

@@ -41,7 +41,7 @@ static int compare_votes(const void *a, const void *b)
 
 #define MOST_CANDIDATES 500 // the largest shapes decide
 
-/** The move that most votes agree on; its weight is 0 if there are none. */
+/** The move with the most votes; its weight is 0 without votes. */
 static Vote decide(GArray *votes)
 {
     Vote best = {0};

@@ -127,7 +127,7 @@ static char *suggestion(GPtrArray *names, const char *wanted)
     return g_strdup_printf("; did you mean %s (%d file%s)?", best, best_n, best_n == 1 ? "" : "s");
 }
 
-/** Whether a name matches a pattern with a number, or if that is NULL, a glob. */
+/** Returns: true if a name matches a pattern with a number, or if that is NULL, a glob. */
 static bool fits(const char *name, const FlPattern *pattern, const char *wildcards, int *number)
 {
     return pattern ? fl_pattern_match(pattern, name, number)

@@ -22,7 +22,7 @@ typedef struct FlSequence {
     char **found; // all files that the inputs name, those of other frames as well; ends in NULL
 } FlSequence;
 
-/** Which frames are wanted of the inputs. */
+/** The selection of frames from the inputs. */
 typedef struct FlSequenceOptions {
     const char *range; // "1001-1096", "1-96x2", "10-", "1,5,9" and lists of these; NULL: all
     FlMissing missing;
@@ -61,7 +61,7 @@ void fl_sequence_leave_out(FlSequence *sequence, FlMissing missing, GError *cons
 /** With hold, the frame whose file frame t gets: itself, if it is good. */
 int fl_sequence_instead(GError *const *failed, int n, int t);
 
-/** Whether two frames, by index, are the same file, or the same layer of one. */
+/** Returns: true if two frames, by index, are the same file, or the same layer of one file. */
 bool fl_sequence_same(const FlSequence *sequence, int a, int b);
 
 void fl_sequence_free(FlSequence *sequence); // NULL is fine

@@ -21,17 +21,17 @@
 
 #define SETTINGS_MOST 8 // of a row
 
-/* What a row is painted with: settings that come after the caller's and so override them. */
+/* The settings of one row. They follow the caller's settings and override them. */
 typedef struct Variant {
     const char *name; // of the row
-    const char *says; // what the page says of it, in HTML; "" where there is no page
+    const char *says; // description on the page, in HTML; "" without a page
     int n;
     FlSetting setting[SETTINGS_MOST];
 } Variant;
 
 /* A kind of comparison. */
 typedef struct Kind {
-    const char *noun, *output; // in the note; the sheet if none is given
+    const char *noun, *output; // in the note; the default file of the sheet
     bool has_page;             // beside the sheet
 } Kind;
 
@@ -46,8 +46,8 @@ typedef struct Comparison {
     FlDrawing *drawing;
     FlContactSheet contact;
     char *path;     // of the sheet
-    char *page;     // beside it; NULL: none
-    int row, frame; // where the next painted frame goes
+    char *page;     // beside it; NULL: no page
+    int row, frame; // place of the next painted frame
     int n_frames;
     uint8_t *slice; // of the row that is painted: of each frame the line in the middle, RGBA
 } Comparison;
@@ -222,7 +222,7 @@ static bool paint(Comparison *c, const Variant *variant, int row, GError **error
     return true;
 }
 
-/* What the caller has set for all rows, as a line of the page. */
+/* Appends a line with the caller's settings, which hold for all rows. */
 static void append_settings(GString *page, const FlRenderOptions *options)
 {
     for (size_t k = 0; k < options->n_settings; k++) {

@@ -33,7 +33,7 @@ FlFilm *fl_film_open(const char *const *inputs)
     return film;
 }
 
-/* The drawing and everything made of it; the next frame reads it again. */
+/* Frees the drawing and all data derived from the drawing; the next frame reads it again. */
 static void forget(FlFilm *film)
 {
     fl_composite_clear(&film->composite);

@@ -6,7 +6,7 @@
 #include "io/png.h"
 #include "job/paint_files.h"
 
-#define SHEET "paper_sheet" // no region's name has such a line in it
+#define SHEET "paper_sheet" // region names have no underscore
 #define GROUND "paper_ground"
 
 /* Writes a layer in the whole frame's size, so that any program can stack them. */
@@ -77,7 +77,7 @@ static int stack_layers(const FlFrameWriter *writer, const FlComposite *composit
                                     .height = box.height,
                                     .runs = &from->runs};
     }
-    if (composite->sheet && composite->ground) // frames over nothing are not multiplied
+    if (composite->sheet && composite->ground) // frames without a background are not multiplied
         layers[n++] = (FlSinkLayer){.name = SHEET,
                                     .width = width,
                                     .height = height,

@@ -8,7 +8,7 @@
 
 typedef struct FlFrameWriter {
     const FlPlan *plan;        // borrowed
-    const FlPaperSheet *paper; // borrowed; NULL: none
+    const FlPaperSheet *paper; // borrowed; NULL: no paper
     const FlResume *resume;    // borrowed: which files to keep and which to replace
     FlSink *sink;
     FlSink *movie; // NULL: the frames alone

@@ -85,7 +85,7 @@ static bool exports(const FlPlan *plan)
     return plan->options.ebsynth && !plan->options.merge;
 }
 
-/* Gives a painter's picture to whatever inspects it. */
+/* Gives a painter's picture to the inspectors: statistics, report and dump. */
 static bool inspect_picture(const FlFrames *frames, int p, int frame, GError **error)
 {
     const FlPlan *plan = frames->plan;
@@ -214,8 +214,8 @@ static bool seek_painters(FlFrames *frames, int shown, GError **error)
     return good;
 }
 
-/* Where a missing frame is held, it is the one before again. Shapes are drawn beside the painting,
- * those of the next frame beside the composing. */
+/* A missing frame that is held repeats the one before. Shapes are drawn beside the painting, those
+ * of the next frame beside the composing. */
 static bool make_frame(FlFrames *frames, int frame, int next, FlComposite *composite,
                        double *paint_s, GError **error)
 {
@@ -227,7 +227,7 @@ static bool make_frame(FlFrames *frames, int frame, int next, FlComposite *compo
         start_drawing(frames, shown);
     const bool painted = paint(frames, shown, error);
     *paint_s = seconds_since(start);
-    trim(plan); // what painting has left over is of no use to composing, nor the reverse
+    trim(plan); // painting and composing cannot use each other's freed memory
     if (!fl_task_wait(&frames->drawing, painted ? error : NULL) || !painted)
         return false;
     if (!composed)
@@ -274,7 +274,7 @@ static bool seek_marks(FlFrames *frames, int shown, GError **error)
 bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composite, double *paint_s,
                     GError **error)
 {
-    // a merge that starts late has the paint of the frames before it
+    // a merge that starts late has the paint of the earlier frames
     const bool late = frames->wet && frames->plan->options.merge && !fl_wet_begun(frames->wet);
     return (!late || seek_marks(frames, fl_drawing_shown(frames->plan->drawing, frame), error)) &&
            make_frame(frames, frame, next, composite, paint_s, error);

@@ -12,19 +12,19 @@ typedef struct FlFrames {
     FlPlan *plan;
     FlBackground background;
     FlPaperSheet *sheet; // NULL: none
-    FlDigest sheet_of;   // all that the sheet is made from
+    FlDigest sheet_of;   // digest of all inputs of the sheet
     FlPlan *old_plan;    // until the painters follow the plan; NULL: they do
     FlPainters painters;
-    FlWet *wet;                // what paint leaves on the paper; NULL: nothing
-    FlMotionSource *motion;    // of that, where the painters have none
-    FlReport *report;          // borrowed: looks at each picture; NULL: none
+    FlWet *wet;                // the wet paper, which paint stains; NULL: paint leaves no stains
+    FlMotionSource *motion;    // motion source of `wet`, if the painters have no motion source
+    FlReport *report;          // borrowed: inspects each picture; NULL: no report
     bool beside;               // drawing and writing, which wait for the disk, run beside painting
     FlTask drawing;            // runs beside the painting
-    int marked;                // the frame that the wet paper is at; -1: none
-    int shown;                 // the frame whose pictures the painters have; -1: none
-    int drawn;                 // the frame of `draws`, which `drawing` makes; -1: none
+    int marked;                // the last frame in the wet paper; -1: no frame yet
+    int shown;                 // the frame whose pictures the painters have; -1: no frame yet
+    int drawn;                 // the frame of `draws`, which `drawing` makes; -1: no frame
     GBytes *draws;             // its shapes, packed
-    const char *advice;        // what to do after an interruption; static
+    const char *advice;        // advice to the user after an interruption; static
     int before;                // frames that earlier runs have painted
     gint64 start, first_frame; // microseconds, as g_get_monotonic_time()
 } FlFrames;
@@ -43,7 +43,8 @@ bool fl_frames_check(FlFrames *frames, GError **error);
 /** Makes masks and guides. */
 bool fl_frames_prepare(FlFrames *frames, GError **error);
 
-/** Paints the last pictures of a loop before its first ones; does nothing if it is no loop. */
+/** Paints the last pictures of a loop before its first ones; without effect on a film that is no
+ * loop. */
 bool fl_frames_lead_in(FlFrames *frames, GError **error);
 
 /** Makes it possible to make a frame out of turn: paints what it follows from and is not kept. The
@@ -51,7 +52,7 @@ bool fl_frames_lead_in(FlFrames *frames, GError **error);
 bool fl_frames_seek(FlFrames *frames, int frame, GError **error);
 
 /**
- * Paints and composes a frame. Frames come in order; next is the one that follows, -1: none.
+ * Paints and composes a frame. Frames come in order; next is the frame that follows, or -1.
  *
  * composite: empty; stays so if the plan is of paint alone. paint_s: seconds of the painting.
  */
@@ -64,8 +65,8 @@ bool fl_frames_save(const FlFrames *frames, GPtrArray *states, GError **error);
 /** Restores the state; `path` is its file, for the message. FL_ERROR_CHANGED. */
 bool fl_frames_load(FlFrames *frames, GPtrArray *states, const char *path, GError **error);
 
-/** Tells the options' progress of a stage. done: frames; frame_s: seconds of the last one, 0: none
- * yet. FL_ERROR_INTERRUPTED. */
+/** Tells the options' progress of a stage. done: frames; frame_s: seconds of the last one, 0 before
+ * the first. FL_ERROR_INTERRUPTED. */
 bool fl_frames_tell(const FlFrames *frames, const char *stage, int done, double frame_s,
                     GError **error);
 

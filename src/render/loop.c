@@ -31,7 +31,8 @@ static float random_at(int column, int row)
     return (float)(bits >> 40) / (float)(1 << 24);
 }
 
-/* When the lead-in replaces a pixel, 0 … 1 of its length: a smooth function of the place. */
+/* The time at which the lead-in replaces a pixel, 0..1 of its length: a smooth function of the
+ * place. */
 static float turn_at(int x, int y)
 {
     const int column = x / SPOT_PX, row = y / SPOT_PX;

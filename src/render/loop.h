@@ -19,7 +19,7 @@ typedef struct FlLoop {
     FlSpill *pictures; // fl_painted_bytes() each
 } FlLoop;
 
-/** How many pictures the lead-in of a region with so many pictures has. */
+/** The number of pictures in the lead-in of a region with so many pictures. */
 static inline int fl_loop_length(int n_pictures)
 {
     return MIN(n_pictures / 3, FL_LOOP_LONGEST);

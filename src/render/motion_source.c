@@ -31,7 +31,7 @@ struct FlMotionSource {
     GMutex lock;     // of what follows
     FlSpill *spill;  // outlines by frame, then the steps into each frame
     bool *spilled;   // by frame
-    int *spilled_to; // by frame: where the step into it comes from; -1: none yet
+    int *spilled_to; // by frame: the frame from which the step into it starts; -1: no step yet
     int64_t clock;
     Frame *frame[KEPT];
     Step *step[KEPT];
@@ -173,7 +173,7 @@ static FlCorrespondence *correspond(FlMotionSource *source, const Frame *before,
     return g_steal_pointer(&motions);
 }
 
-/** How the leaves got from one frame to another, to be unref'd; under the lock. */
+/** The motion of the leaves from one frame to another, to be unref'd; under the lock. */
 static Step *step_of(FlMotionSource *source, const Frame *before, const Frame *now, GError **error)
 {
     int oldest = 0;
@@ -197,7 +197,7 @@ static Step *step_of(FlMotionSource *source, const Frame *before, const Frame *n
     return s;
 }
 
-/** What a region's motion is found from. */
+/** The frames and the step from which a region's motion is computed. */
 typedef struct Use {
     Frame *before, *now;
     Step *step;

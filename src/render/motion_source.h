@@ -1,4 +1,4 @@
-/* Where the regions' exact motion comes from: the outlines of the film's frames. */
+/* The source of the regions' exact motion: the outlines of the film's frames. */
 #ifndef FLUIDY_RENDER_MOTION_SOURCE_H
 #define FLUIDY_RENDER_MOTION_SOURCE_H
 
@@ -35,7 +35,7 @@ typedef struct FlRegionStep {
 bool fl_motion_source_get(FlMotionSource *source, const FlRegionStep *step, float *motion,
                           FlMotionShares *shares, GError **error);
 
-/** Whether the motion is 0 all over since nothing of the region has changed, by its outlines. */
+/** Returns: true if the region's outlines are unchanged, so that its motion is 0 everywhere. */
 bool fl_motion_source_rests(FlMotionSource *source, const FlRegionStep *step);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlMotionSource, fl_motion_source_free)

@@ -26,7 +26,7 @@ typedef struct GivenRegion {
     FlPainter painter;
     FlRect page;
     uint8_t *mask, *paint, *layer;
-    uint8_t *alpha; // NULL: the paint has none of its own
+    uint8_t *alpha; // NULL: the paint has no alpha of its own
 } GivenRegion;
 
 static bool refuse(GError **error, const char *what)
@@ -57,7 +57,7 @@ static bool check(const FlRegionPaint *region, GError **error)
     return fl_limit_check(FL_LIMIT_FRAME, pixels / 1e6, "fl_paint_region()", error);
 }
 
-/* ---- what the caller gives ------------------------------------------------------------------- */
+/* ---- input from the caller ------------------------------------------------------------------- */
 
 static bool store_masks(GivenRegion *given, GError **error)
 {

@@ -210,7 +210,7 @@ static bool run_engine(FlPainter *painter, GError **error)
            keep_picture(painter, error);
 }
 
-/* Chooses where picture k, which follows `last`, comes from, with its guides if it needs any. */
+/* Chooses the origin of picture k, which follows `last`, and makes its guides if it needs any. */
 static bool choose_origin(FlPainter *painter, int k, int last, GError **error)
 {
     FlPaintedRegion *result = &painter->result;
@@ -222,7 +222,7 @@ static bool choose_origin(FlPainter *painter, int k, int last, GError **error)
     return !guided || fl_painter_make_guides(painter, error);
 }
 
-/* Takes the picture from the cache if it is there; k: pictures painted before it. */
+/* Takes the picture from the cache, if the cache has it. k: its index in painting order. */
 static bool take_picture(FlPainter *painter, int k, GError **error)
 {
     FlPaintedRegion *result = &painter->result;
@@ -243,8 +243,8 @@ static bool take_picture(FlPainter *painter, int k, GError **error)
     return true;
 }
 
-/* The region's picture `index`, held ones counted once, into painter->result.painted; k: how many
- * were painted before it. */
+/* The region's picture `index`, held ones counted once, into painter->result.painted; k: its index
+ * in painting order. */
 static bool paint_picture(FlPainter *painter, int k, int index, GError **error)
 {
     const int last = painter->picture;
@@ -329,7 +329,8 @@ int fl_painter_seek(FlPainter *painter, int frame, GError **error)
 
 /* ---- states ---------------------------------------------------------------------------------- */
 
-/* Whether its pictures have states: those of others come from files, or there are none. */
+/* Returns: true if the pictures have engine states. Pictures from files, and regions without
+ * pictures, have no state. */
 static bool has_state(const FlPainter *painter)
 {
     return painter->origin == FL_FROM_ENGINE || painter->origin == FL_FROM_CACHE;

@@ -24,9 +24,9 @@ typedef struct FlPainter {
     bool follows;      // a picture was painted before, in this render or an earlier one
     bool keeps_first;  // distances of the first picture, from where guides are made
     int asked, answer; // a picture, and the one around which its depth is measured
-    double cost_s;     // of the last picture that was synthesised, by one thread; 0: none yet
+    double cost_s; // of the last picture that was synthesised, by one thread; 0 before the first
     FlGuideSequence *sequence;
-    FlDigest sequence_of; // all that the sequence is made from
+    FlDigest sequence_of; // digest of all inputs of the sequence
     FlGuides guides;      // of the picture, for the engine; empty: it was not painted
     FlGuides shown;       // of the picture, for inspection: the whole region in px of the picture
     void *paint;          // the state of plan->engine; NULL: all pictures are known
@@ -47,15 +47,16 @@ void fl_painter_clear(FlPainter *painter);
 /** Goes on with a plan by which the region is painted as before. */
 void fl_painter_follow(FlPainter *painter, const FlRegionPlan *region);
 
-/** An estimate of the bytes that the painter keeps between frames. packed: its picture waits so. */
+/** An estimate of the bytes that the painter keeps between frames. packed: its picture is
+ * packed. */
 double fl_painter_bytes(const FlPainter *painter, bool packed);
 
 /** Makes guides for the whole film, unless it has them. The random numbers depend on the seed and
  * the region's name. */
 bool fl_painter_prepare(FlPainter *painter, GError **error);
 
-/** Paints the k-th picture of the lead-in of a loop, in order; beyond painter->loop.n it does
- * nothing. After the last one comes frame 0. */
+/** Paints the k-th picture of the lead-in of a loop, in order; calls beyond painter->loop.n have no
+ * effect. After the last one comes frame 0. */
 bool fl_painter_lead_in(FlPainter *painter, int k, GError **error);
 
 /** Paints the next frame of the film, in order. A held frame keeps the last picture, and one that

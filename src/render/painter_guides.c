@@ -6,7 +6,7 @@
 #include "guides/rim.h"
 #include <math.h>
 
-/* ---- where they come from ------------------------------------------------------------------ */
+/* ---- sources of guides --------------------------------------------------------------------- */
 
 /* The frame of the film that has a picture of the guides. */
 static int frame_of(const FlPainter *painter, int picture)
@@ -15,7 +15,7 @@ static int frame_of(const FlPainter *painter, int picture)
     return (picture - painter->wrap + n) % n * painter->plan->settings.hold;
 }
 
-/* Whether guides have half the size of the picture. */
+/* Returns: true if guides have half the size of the picture. */
 static bool halves(const FlPainter *painter)
 {
     return fl_field_px(painter->plan->style->exemplar) == 2;
@@ -81,7 +81,8 @@ static bool painter_motion(void *data, int frame, const FlOutlinePair *outlines,
     return given_flow(data, frame, NAN, motion, error);
 }
 
-/* Whether there is a picture before one; nothing comes before the first, but in a loop. */
+/* Returns: true if a picture precedes this one. The first picture has a predecessor only in a
+ * loop. */
 static bool has_past(const FlPainter *painter, int frame)
 {
     return frame_of(painter, frame) > 0 || painter->plan->loops;
@@ -146,7 +147,7 @@ int fl_guided_patches(const FlStyleInstance *style, FlRect page)
 
 /* ---- depth --------------------------------------------------------------------------------- */
 
-/* Whether the shapes that share edges with the region are the same in two frames. */
+/* Returns: true if the shapes that share edges with the region are the same in two frames. */
 static bool joins_same(const FlPainter *painter, int a, int b)
 {
     const FlSurround *surround = painter->shapes->surround;
@@ -154,8 +155,8 @@ static bool joins_same(const FlPainter *painter, int a, int b)
 }
 
 /* The picture around which the depth of another one is measured. A shape at rest keeps the depth
- * with which it came to rest, whatever crosses it, as its paint is kept; only where those that it
- * shares edges with move, come or go is it measured anew. */
+ * with which it came to rest, whatever crosses it, as its paint is kept; its depth is measured anew
+ * only if shapes that share its edges move, come or go. */
 static int depth_picture(FlPainter *painter, int picture)
 {
     const int region = painter->plan->region, asked = picture;
@@ -171,7 +172,8 @@ static int depth_picture(FlPainter *painter, int picture)
     return picture;
 }
 
-/* The depth of a shape as far as others share its edges: weight 0..1 is how far they are there. */
+/* Blends `depth`, by weight 0..1, towards the depth of the shape united with those that share its
+ * edges. may_fall: false: it only grows. */
 static bool add_depth(const FlRimShape *with, float border_px, float weight, bool may_fall,
                       float *depth, GError **error)
 {
@@ -185,7 +187,7 @@ static bool add_depth(const FlRimShape *with, float border_px, float weight, boo
     return true;
 }
 
-/* In place: a pixel of the half lies before the four that it is made of. */
+/* Halves in place: each pixel of the half is stored before the four pixels that it averages. */
 static void halve_around(FlSurroundPlanes *around, int width, int height)
 {
     uint8_t *const planes[] = {around->together, around->closed, around->seen, around->shown};
@@ -194,7 +196,7 @@ static void halve_around(FlSurroundPlanes *around, int width, int height)
             fl_mask_halve(planes[k], width, height, planes[k]);
 }
 
-/* The place on the page of what guides are of. */
+/* The rectangle of the page that the guides cover. */
 static FlRect guided_place(const FlPainter *painter, const FlGuides *guides)
 {
     const FlRect whole = fl_painter_guided(painter);
@@ -248,7 +250,7 @@ static bool measure_among_others(const FlPainter *painter, int frame, FlGuides *
     return true;
 }
 
-/* The depth that the paint takes the region to have, unless a preset's guides know none. */
+/* The depth that the paint takes the region to have, unless the preset's guides lack a depth. */
 static bool make_depth(FlPainter *painter, FlGuides *guides, GError **error)
 {
     const FlSurround *surround = painter->shapes->surround;
@@ -297,7 +299,7 @@ static bool stir_what_dries(const FlPainter *painter, uint8_t *square, GError **
     return true;
 }
 
-/* ---- what is needed ------------------------------------------------------------------------ */
+/* ---- needed parts -------------------------------------------------------------------------- */
 
 bool fl_painter_rests(FlPainter *painter, int last)
 {
@@ -309,7 +311,7 @@ bool fl_painter_rests(FlPainter *painter, int last)
             depth_picture(painter, last) == depth_picture(painter, now));
 }
 
-/* Whether the engine keeps parts at rest in the picture. */
+/* Returns: true if the engine keeps parts at rest in the picture. */
 static bool keeps_parts(const FlPainter *painter)
 {
     const FlParams *params = &painter->plan->settings.params;
@@ -353,7 +355,7 @@ static bool stir_joins(const FlPainter *painter, uint8_t *square, GError **error
     return true;
 }
 
-/* Parts whose mask and motion say that they rest, and with whose depth nothing interferes; the
+/* Parts whose mask and motion say that they rest, and whose depth no other shape changes; the
  * engine looks at the others. moving: their rectangle, or that of all. */
 static bool find_resting(const FlPainter *painter, FlRestingParts *resting, FlRect *moving,
                          GError **error)
@@ -372,7 +374,7 @@ static bool find_resting(const FlPainter *painter, FlRestingParts *resting, FlRe
             fl_resting_parts_init(resting, rect.width, rect.height, square, moving, error));
 }
 
-/* The part of the frame that guides are needed of: with all that they depend on there. */
+/* The part of the frame for which guides are needed, including all pixels on which these depend. */
 static FlRect needed_part(const FlPainter *painter, FlRect moving)
 {
     const FlStyleInstance *style = painter->plan->style;
@@ -381,7 +383,7 @@ static FlRect needed_part(const FlPainter *painter, FlRect moving)
     return fl_rect_grown(moving, MAX(patches, fl_rim_reach(style->exemplar->border_px)), whole);
 }
 
-/* The depth takes as much scratch as the other planes, which come after it. */
+/* The depth takes as much scratch as the other planes, which are made later. */
 static bool fill_guides(FlPainter *painter, FlRect part, FlGuides *guides, GError **error)
 {
     if (!fl_guides_init(guides, part.width, part.height, error))

@@ -1,16 +1,16 @@
-/* The guides of a painter's pictures: where they come from, and which part of them is needed. */
+/* The guides of a painter's pictures: their sources, and the part of them that is needed. */
 #ifndef FLUIDY_RENDER_PAINTER_GUIDES_H
 #define FLUIDY_RENDER_PAINTER_GUIDES_H
 
 #include "render/painter.h"
 
-/** A part of the page in px of the guides, which drafts have half of. */
+/** A part of the page in px of the guides. Drafts halve the size of the guides. */
 FlRect fl_guided_part(const FlStyleInstance *style, FlRect part);
 
 /** The grid of the coarsest level, px of the guides. */
 int fl_guided_grid(const FlStyleInstance *style, FlRect page);
 
-/** How far patches of the coarsest level reach, and its grid, px of the guides. */
+/** The reach of the coarsest level's patches plus the level's grid, px of the guides. */
 int fl_guided_patches(const FlStyleInstance *style, FlRect page);
 
 /** The page that a painter's rectangle lies on. */
@@ -25,7 +25,8 @@ FlRect fl_painter_guided(const FlPainter *painter);
  */
 FlGuideSource fl_painter_guide_source(FlPainter *painter);
 
-/** Whether the painter's picture has the guides of picture `last`, which its result still shows. */
+/** Returns: true if the painter's picture has the guides of picture `last`, which its result still
+ * shows. */
 bool fl_painter_rests(FlPainter *painter, int last);
 
 /**

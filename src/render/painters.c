@@ -69,7 +69,7 @@ static bool make_guides(FlPainters *painters, GError **error)
     return fl_schedule_run(items, painters->n, make_guides_of, painters, error);
 }
 
-/* ---- what a film gives ----------------------------------------------------------------------- */
+/* ---- input from the film --------------------------------------------------------------------- */
 
 /* Flow files have the size of the output, which drafts halve. */
 static bool load_flow(const FlPlan *plan, const FlShapes *shapes, const char *file, float unknown,
@@ -119,7 +119,7 @@ static FlShapes shapes_of(FlPainters *painters)
                       .data = painters};
 }
 
-/* Opens the drawing's own motion for regions that are carried along it. */
+/* Opens the drawing's own motion for the regions whose paint it carries. */
 static bool open_motion(FlPainters *painters, GError **error)
 {
     const FlPlan *plan = painters->plan;
@@ -140,7 +140,7 @@ static bool open_motion(FlPainters *painters, GError **error)
 
 /* ---- the whole ------------------------------------------------------------------------------- */
 
-/* Whether a painter paints a region by this method already. */
+/* Returns: true if a painter paints a region by this method already. */
 static bool paints_so(const FlPainter *painter, const FlRegionPlan *region, FlDigest method)
 {
     const FlRegionPlan *before = painter->plan;
@@ -282,14 +282,14 @@ static bool do_one(void *data, int p, int thread, GError **error)
     return step->work(step->data, p, step->step, error);
 }
 
-/* How long a thread takes, in seconds: what it took the last time, or what is usual for the area.
- */
+/* The cost of a picture, seconds of one thread: that of the last picture, or the usual one for the
+ * area. */
 static double cost_of(const FlPainter *painter)
 {
     return painter->cost_s > 0 ? painter->cost_s : 3e-6 * painter->plan->area_px;
 }
 
-/* A region that rests costs nothing, but it does when it moves again; and a held frame shows the
+/* A region at rest costs no time, but it does when it moves again; and a held frame shows the
  * picture of an earlier step. */
 static void note_cost(FlPainter *painter, int step, bool together)
 {

@@ -28,7 +28,8 @@ void fl_painters_recall(FlPainters *painters, const FlPlan *plan);
 /** True if any region's masks are needed for its guides. */
 bool fl_painters_need_masks(const FlPainters *painters);
 
-/** True if a picture that was known could not be taken: another try would paint it. */
+/** True if a picture with a known digest was missing in the cache: a second render would paint that
+ * picture. */
 bool fl_painters_stale(const FlPainters *painters);
 
 /** Keeps what the next render of the film needs to know all pictures. */

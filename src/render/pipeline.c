@@ -128,7 +128,7 @@ static bool begin_export(const Pipeline *pipeline, GError **error)
     return !o->ebsynth || o->merge || fl_ebsynth_begin(o->ebsynth, error);
 }
 
-/* A dry run writes nothing, so that what is in the way of the real one is a note. */
+/* A dry run writes no files, so an obstacle to the real run is only a note. */
 static bool note_obstacles(Pipeline *pipeline, GError **error)
 {
     g_autoptr(GError) obstacle = NULL;
@@ -301,7 +301,7 @@ bool fl_render_frames(const FlRenderOptions *options, FlTakeFrame take, void *ta
     FlRenderOptions without_files = *options;
     without_files.output = NULL, without_files.format = "null";
     without_files.overwrite = FL_OVERWRITE_YES, without_files.resume = false;
-    without_files.cache = NULL; // frames are given once, so nothing can be tried again
+    without_files.cache = NULL; // frames are given once, so a failed render cannot be retried
     without_files.layers = without_files.report = without_files.stats = without_files.dump = NULL;
     if (!options->merge)
         without_files.paint = without_files.ebsynth = NULL;

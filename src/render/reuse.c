@@ -24,8 +24,8 @@ static guint pictures_of(const FlPlan *plan, int p)
     return (guint)(n + (region->loops ? fl_loop_length(n) : 0));
 }
 
-/* The digests of all pictures, if they and every picture are kept; none of a region that is hidden
- * in all frames, which counts if nothing but frames is made. */
+/* The digests of all pictures, if they and every picture are kept; an empty list for a region that
+ * is hidden in all frames, which counts if only frames are made. */
 static void recall(FlReuse *reuse, const FlPlan *plan, int p)
 {
     const FlRect page = {0, 0, fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing)};
@@ -133,7 +133,7 @@ void fl_reuse_next(FlReuse *reuse, int k, const FlGuides *guides, int window)
         reuse->last = g_array_index(digests_of(reuse), FlDigest, k);
         return;
     }
-    g_array_set_size(reuse->made, (guint)k); // those of pictures that nothing shows stay 0
+    g_array_set_size(reuse->made, (guint)k); // those of pictures that no frame shows stay 0
     if (guides)
         add_guides(&reuse->last, guides);
     else
@@ -150,7 +150,7 @@ static GBytes *take_state(GBytes *kept, FlSpan *packed)
     const size_t from = sizeof(uint64_t);
     if (!fl_reader_take(&reader, state_bytes, 1))
         return NULL;
-    *packed = (FlSpan){(void *)(uintptr_t)reader.at, reader.left}; // which is only read
+    *packed = (FlSpan){(void *)(uintptr_t)reader.at, reader.left}; // read only
     return g_bytes_new_from_bytes(kept, from, state_bytes);
 }
 
@@ -185,13 +185,13 @@ void fl_reuse_keep(FlReuse *reuse, const uint8_t *rgb, size_t bytes, GBytes *sta
 {
     gsize state_bytes;
     const void *data = g_bytes_get_data(state, &state_bytes);
-    const FlSpan picture = {(void *)(uintptr_t)rgb, bytes}; // which is only read
+    const FlSpan picture = {(void *)(uintptr_t)rgb, bytes}; // read only
     const size_t room = fl_compress_bound(&picture, 1);
     g_autofree uint8_t *packed = fl_alloc(room, 1, "a picture", NULL);
     const size_t packed_bytes = packed ? fl_compress(&picture, 1, packed, room) : 0;
     uint64_t first = state_bytes;
     if (packed_bytes == 0)
-        return; // without memory for it, it is painted again next time
+        return; // without memory the picture is not cached; the next render paints it again
     const FlSpan parts[] = {
         {&first, sizeof first}, {(void *)(uintptr_t)data, state_bytes}, {packed, packed_bytes}};
     fl_store_put(reuse->cache, FL_KEPT_PICTURE, reuse->last, parts, G_N_ELEMENTS(parts));

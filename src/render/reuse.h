@@ -1,4 +1,5 @@
-/* What of a region's paint earlier renders have left in the cache, and what this one leaves. */
+/* The part of a region's paint that earlier renders left in the cache, and that this render
+ * adds. */
 #ifndef FLUIDY_RENDER_REUSE_H
 #define FLUIDY_RENDER_REUSE_H
 
@@ -11,11 +12,11 @@
  * changes is found where guides begin to differ, wherever that is, and the first picture that is
  * not in the cache is painted from the state that was kept with the one before.
  *
- * Where nothing that the guides are made from has changed in the whole film, the digests are known
- * from last time, and neither masks nor guides are made.
+ * If all inputs of the guides are unchanged in the whole film, the digests are known from the last
+ * render, and neither masks nor guides are made.
  */
 typedef struct FlReuse {
-    FlStore *cache;  // borrowed; NULL: nothing is taken or kept
+    FlStore *cache;  // borrowed; NULL: pictures are neither taken nor kept
     bool takes;      // false while guides or statistics are inspected: then everything is painted
     FlFacts *facts;  // of method and film
     FlDigest method; // of the facts that decide the paint besides the shapes
@@ -23,15 +24,15 @@ typedef struct FlReuse {
     FlDigest last;       // of the picture painted or taken last
     GArray *made;        // of FlDigest: the pictures so far, where they follow from the guides
     GArray *known;       // of FlDigest: all pictures of the film; NULL: not known
-    guint n_done;        // pictures painted or taken, in earlier runs too
-    FlRect rect;         // where known: the painter's
+    guint n_done;        // pictures painted or taken, including earlier runs
+    FlRect rect;         // the painter's, if known
     bool stale;          // a known picture is gone, so that this render cannot go on
     GBytes *state;       // after the last picture, which was taken; NULL: the engine has its own
     FlDigest state_of;   // the picture with that state
     int n_taken, n_painted;
 } FlReuse;
 
-/** Begins with the method by which a region of `shapes` is painted. cache: NULL: keeps nothing;
+/** Begins with the method by which a region of `shapes` is painted. cache: NULL: keeps no pictures;
  * inputs: knows the digests of styles. */
 void fl_reuse_init(FlReuse *reuse, FlStore *cache, const FlShapes *shapes,
                    const FlRegionPlan *region, FlInputs *inputs);
@@ -46,17 +47,19 @@ void fl_reuse_begin(FlReuse *reuse, FlRect rect);
 /** True if picture k, counted as they are painted, from 0, can be taken: its digest is known. */
 bool fl_reuse_has(const FlReuse *reuse, int k);
 
-/** Advances to picture k. Its digest is known, or follows from its guides (NULL: the region rests
- * in them) and a style whose window is there. */
+/** Advances to picture k. Its digest is known, or follows from its guides (NULL: they are the same
+ * as before) and a style that has this window. */
 void fl_reuse_next(FlReuse *reuse, int k, const FlGuides *guides, int window);
 
-/** Takes the picture, colours and alpha, and the state after it. Returns: whether it was there. */
+/** Takes the picture, colours and alpha, and the state that follows. Returns: true if the cache had
+ * the picture. */
 bool fl_reuse_take(FlReuse *reuse, uint8_t *rgb, size_t bytes);
 
-/** Drops the picture whose state the engine has refused; another try of the render paints it. */
+/** Drops the picture whose state the engine has refused; a second try of the render paints that
+ * picture. */
 void fl_reuse_refuse_state(FlReuse *reuse);
 
-/** Keeps the picture that was painted in its place, and the state after it. */
+/** Keeps the picture that was painted instead, and the state that follows. */
 void fl_reuse_keep(FlReuse *reuse, const uint8_t *rgb, size_t bytes, GBytes *state);
 
 /** The digests so far as bytes, for a render that is resumed; to be freed. */
@@ -65,15 +68,15 @@ GBytes *fl_reuse_save(const FlReuse *reuse);
 /**
  * The reverse, with the state of an engine or, where that is empty, the one in the cache.
  *
- * Returns: whether there is a state, in reuse->state unless the pictures are known.
+ * Returns: true if a state exists, in reuse->state unless the pictures are known.
  */
 bool fl_reuse_load(FlReuse *reuse, GBytes *digests, GBytes *state);
 
-/** Keeps the digests of the whole film, and what decided it. */
+/** Keeps the digests of the whole film, and the facts that decided them. */
 void fl_reuse_finish(FlReuse *reuse);
 
-/** Why the region is painted anew, such as "w-temp was 5 and is 8"; NULL: not known. To be freed.
- */
+/** The reason why the region is painted anew, such as "w-temp was 5 and is 8"; NULL: not known. To
+ * be freed. */
 char *fl_reuse_reason(const FlReuse *reuse);
 
 #endif

@@ -56,8 +56,8 @@ void fl_summary_of_nothing(const FlPlan *plan)
     send_note(plan, line);
 }
 
-/* Why some of each region was painted although the cache is not new; to be freed, as an array of
- * strings, of which those that have no reason are "". */
+/* The reason why some of each region was painted although the cache is not new: an array of
+ * strings, "" if no reason is known; to be freed. */
 static char **reasons_of(const FlPainters *painters)
 {
     char **reasons = g_new0(char *, (gsize)painters->n + 1);
@@ -69,7 +69,8 @@ static char **reasons_of(const FlPainters *painters)
     return reasons;
 }
 
-/* A line for all regions that have the reason of region p, unless an earlier one has it. */
+/* Notes one line for all regions that share the reason of region p, unless an earlier region
+ * did. */
 static void tell_reason(const FlPainters *painters, int p, char **reasons)
 {
     int n = 0, painted = 0, all = 0;
@@ -105,7 +106,7 @@ void fl_summary_of_reuse(const FlPainters *painters)
     send_note(painters->plan, line);
 }
 
-/* An estimate of the time; held frames take none. */
+/* An estimate of the time; held frames take no time. */
 static char *forecast(const FlPlan *plan, double frame_s)
 {
     const int n = (fl_drawing_frames(plan->drawing) - 1) / plan->hold + 1;

@@ -8,7 +8,7 @@
 /** Notes what was painted, the time by stage, and the report's path. */
 void fl_summary_of_render(const FlPlan *plan, const FlStats *stats);
 
-/** Notes that all is as the plan would make it: plan->finished. */
+/** Notes that all outputs are complete and up to date: plan->finished. */
 void fl_summary_of_nothing(const FlPlan *plan);
 
 /** Notes how much paint was taken from the cache, and why the rest was not. */

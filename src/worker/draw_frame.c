@@ -9,7 +9,7 @@
 
 /*
  * Steps of the same region and paint go into one draw. A step may also join an earlier draw if it
- * overlaps nothing in between: twenty discs of three colours are a few draws, not sixty.
+ * overlaps no draw in between: twenty discs of three colours are a few draws, not sixty.
  */
 typedef struct Draw {
     int region;
@@ -82,10 +82,10 @@ typedef struct Stage {
     const FlRequest *frame;
     FlSvg *svg;
     cairo_surface_t *coverage, *picture; // scratch, blank between draws; picture may be NULL
-    FlFrameCache *cache;                 // of arrays of one FlDraw; NULL: none
+    FlFrameCache *cache;                 // of arrays of one FlDraw; NULL: no cache
     size_t cached_bytes;                 // that this frame has kept
     FlDigest *leaf_digest, *unit_digest; // with a cache
-    FlLinePaths **paths;                 // by step, of those that a hand draws; NULL: none
+    FlLinePaths **paths;                 // by step, of those that a hand draws; NULL: no hand
 } Stage;
 
 static void stage_clear(Stage *stage)
@@ -440,7 +440,7 @@ static void cache_stage(Stage *stage, FlFrameCache *cache)
     fl_leaf_digests(stage->svg, stage->leaf_digest, stage->unit_digest);
 }
 
-/** Of all that a step is drawn from; unknown with its leaf. */
+/** The digest of all inputs of a step; unknown if its leaf's is. */
 static FlDigest digest_of_step(const Stage *stage, const FlDrawStep *step)
 {
     const FlLeaves *leaves = fl_svg_leaves(stage->svg);
@@ -458,7 +458,7 @@ static FlDigest digest_of_step(const Stage *stage, const FlDrawStep *step)
     return digest;
 }
 
-/** Of all that a draw is drawn from; unknown where a hand draws. */
+/** The digest of all inputs of a draw; unknown for a draw by hand. */
 static FlDigest digest_of_draw(const Stage *stage, const Draw *draw)
 {
     const FlRequest *frame = stage->frame;
@@ -477,7 +477,7 @@ static FlDigest digest_of_draw(const Stage *stage, const Draw *draw)
     return digest;
 }
 
-/** Draws it, or copies what was drawn in the frame before. */
+/** Rasterises a draw, or copies an identical one from the frame before. */
 static bool make_draw(Stage *stage, const Draw *draw, FlDraw *out, GError **error)
 {
     const FlDigest digest = digest_of_draw(stage, draw);

@@ -39,7 +39,7 @@ typedef struct FlDraw {
                        // flat `rgb`. A is coverage again, colours are defined where A > 0
     uint8_t rgb[3];    // the fill; of a picture its mean
     uint8_t alpha;     // opacity of the draw, 255 opaque; not part of coverage
-    FlBlendMode blend_mode; // with what is below it
+    FlBlendMode blend_mode; // with the draws below
 } FlDraw;
 
 typedef struct FlDrawList {
@@ -61,7 +61,7 @@ typedef struct FlHand {
     FlTooth tooth; // of the frame's paper
 } FlHand;
 
-/** True if a hand, NULL: none, draws any of the n steps. */
+/** True if the hand draws any of the n steps; NULL: no hand. */
 bool fl_steps_need_hand(const FlDrawStep *step, int n, const FlHand *hand);
 
 void fl_draw_clear(FlDraw *draw);
@@ -76,7 +76,7 @@ size_t fl_draw_bytes(const FlDraw *draw);
 /** Copies what no hand has drawn. FL_ERROR_NO_MEMORY; clear the copy then as well. */
 bool fl_draw_copy(const FlDraw *draw, FlDraw *copy, GError **error);
 
-/** The draw of that digest; NULL: there is none. */
+/** The draw of that digest; NULL: no draw has it. */
 const FlDraw *fl_draw_cache_find(FlFrameCache *cache, FlDigest digest);
 
 /**

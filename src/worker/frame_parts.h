@@ -21,7 +21,7 @@ typedef struct FlSurveyPart {
     int leaf; // index of the leaf; of a unit -1 - its index
     FlPart part;
     bool stroke;
-    bool has_fill, has_stroke; // of the leaf it is a part of
+    bool has_fill, has_stroke; // of its leaf
     float width;               // of a stroke, px of the picture; 0: a fill alone; below 0: neither
     bool thick;                // a stroke without a fill that is a limb rather than a line
     FlPaintKind kind;
@@ -43,9 +43,9 @@ typedef struct FlSurveyFrame {
     GArray *parts;   // FlSurveyPart, bottom up
     FlPageSize page; // px of the picture
     FlCanvas canvas; // the frame's page; the caller's
-    char **whole;    // FlSvgOptions.whole; NULL: none
+    char **whole;    // FlSvgOptions.whole; NULL: no list
     int n_nameless;  // groups without an id
-    char **files;    // real paths that it refers to; NULL: none
+    char **files;    // real paths of the files that it refers to; NULL: no files
 } FlSurveyFrame;
 
 void fl_survey_frame_clear(FlSurveyFrame *frame);

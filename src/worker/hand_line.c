@@ -70,7 +70,7 @@ static void note_pixel(Nearest *nearest, size_t i, FlLinePoint a, FlLinePoint b,
     nearest->aside[i] = x * qy - y * qx < 0 ? -sqrtf(square) : sqrtf(square);
 }
 
-/** The pixels of the box within reach of points; empty if there are none. */
+/** The pixels of the box within reach of points; empty without points. */
 static FlRect reached(FlRect box, const FlLinePoint *point, int n, float reach)
 {
     float x0 = point->x, x1 = x0, y0 = point->y, y1 = y0;
@@ -202,7 +202,7 @@ static float width_at(const FlHandLine *hand, const FlLinePath *path, float far,
     return fminf(band(d, share * half) / band(d, half), 1);
 }
 
-/** The share of colour that the tool leaves on the paper; 1: all of it. */
+/** The share of colour that the tool leaves on the paper, 0..1. */
 static float deposit(const FlHandLine *hand, float load, float grain, int x, int y)
 {
     if (load >= AMPLE)
@@ -294,7 +294,7 @@ static bool is_edge(const Nearest *nearest, const uint8_t *coverage, const FlLin
     return false;
 }
 
-/** The point of a subpath at a distance along it. */
+/** The point at a distance along a subpath. */
 static FlLinePoint point_at(const FlLinePoint *point, int n, float far)
 {
     int low = 0, high = n - 1;

@@ -9,8 +9,8 @@
 #include <fluidy/error.h>
 
 /**
- * How a tool draws. Lengths are widths of the line, so that a line keeps its looks in every size;
- * grain is px of the page, see base/page.h, as the paper is.
+ * The properties of a drawing tool. Lengths are widths of the line, so that a line keeps its looks
+ * in every size; grain is px of the page, see base/page.h, as the paper is.
  */
 typedef struct FlLineKind {
     float play, wave;        // share by which the width varies, over such a length

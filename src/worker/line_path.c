@@ -68,7 +68,7 @@ static double outline_px(const FlOutlines *o, const FlGeometry *g)
     return sum;
 }
 
-/** True if all coordinates are small enough to compute with. */
+/** True if all coordinates are small enough for the computations. */
 static bool is_sane(const FlLinePaths *paths)
 {
     for (guint k = 0; k < paths->point->len; k++) {

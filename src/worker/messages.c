@@ -278,7 +278,8 @@ static bool is_sound(const FlSurveyPart *part)
     return sound && part->box[0] <= part->box[2] && part->box[1] <= part->box[3];
 }
 
-/** Makes the numbers of a part's strings those of the film. Returns: false if there are none. */
+/** Makes the numbers of a part's strings those of the film. Returns: false if a number is out of
+ * range. */
 static bool renumber(FlSurveyPart *part, const int *number, int n)
 {
     int *const text[] = STRINGS(part);

@@ -10,7 +10,7 @@
 
 typedef enum FlVerb {
     FL_VERB_COUNT,    // the frames in a file: layers, pages, moments
-    FL_VERB_MEASURE,  // the page of a frame, and where its shapes are on it
+    FL_VERB_MEASURE,  // the page of a frame, and the place of its shapes on the page
     FL_VERB_SURVEY,   // the parts of a frame
     FL_VERB_OUTLINES, // the outlines of its leaves
     FL_VERB_DRAW,     // its draw list
@@ -61,7 +61,7 @@ typedef struct FlPageMeasures {
     GArray *shapes;       // FlShape; empty where they are not wanted
 } FlPageMeasures;
 
-/** What FL_VERB_COUNT answers. */
+/** The answer to FL_VERB_COUNT. */
 void fl_inner_frames_pack(const FlInnerFrames *frames, GByteArray *out);
 bool fl_inner_frames_unpack(FlReader *reader, FlInnerFrames *frames);
 

@@ -14,7 +14,7 @@ typedef struct Header {
     size_t bytes;
 } Header;
 
-/* A plane of a draw; of no bytes if it has none. */
+/* A plane of a draw; of 0 bytes if the draw lacks the plane. */
 static FlSpan part_of(const FlDraw *draw, unsigned planes, int k)
 {
     void *const data[] = {draw->area.row, draw->coverage, draw->by_hand, draw->picture};

@@ -202,8 +202,8 @@ static void widen(FlFrameProbe *f, const FlLeaf *leaf, FlRect *box)
 }
 
 /**
- * Whether the small picture may not show a leaf. What is larger and leaves nothing there is hidden:
- * by a mask or a clip, or beside the page.
+ * Returns: true if the leaf may be too small for the small picture. Larger leaves that leave no
+ * pixels there are hidden by a mask or a clip, or lie beside the page.
  */
 static bool is_tiny(FlFrameProbe *f, const FlLeaf *leaf)
 {

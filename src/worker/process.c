@@ -133,7 +133,7 @@ G_GNUC_NORETURN static void work(const FlProcess *process, FlReader told)
     _exit(0);
 }
 
-/* ---- the process that starts it -------------------------------------------------------------- */
+/* ---- the parent process ---------------------------------------------------------------------- */
 
 /** The worker and the end of a pipe that it alone keeps open. */
 typedef struct Child {
@@ -243,7 +243,7 @@ bool fl_process_may_fork(void)
 
 /**
  * Forks into a PID namespace, and into a user namespace unless the user is root, who could no
- * longer read the files of others there. A system that has none of them forks as usual.
+ * longer read the files of others there. A system without these namespaces forks as usual.
  */
 static pid_t fork_apart(void)
 {

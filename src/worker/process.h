@@ -9,8 +9,8 @@
 
 /**
  * A process that only starts a worker when it is told to, reports its end, and ends with the host.
- * Once the host has threads it must not fork; this process has none. Where the system lets it, it
- * is the first of a PID and a user namespace.
+ * Once the host has threads it must not fork; this process has only one thread. Where the system
+ * lets it, it is the first of a PID and a user namespace.
  */
 typedef struct FlProcess {
     pid_t pid;
@@ -41,7 +41,7 @@ typedef struct FlTicket {
 /** True if this process has one thread, and so may fork. */
 bool fl_process_may_fork(void);
 
-/** Starts it. Returns: false if it cannot be started. */
+/** Starts the process. Returns: false if it cannot be started. */
 bool fl_process_start(FlProcess *process);
 
 /** Ends it and its worker. */
@@ -54,7 +54,7 @@ void fl_process_pack_orders(GByteArray *out, bool confined, bool required,
 /** Replaces what a memory file holds. Returns: false with errno. */
 bool fl_memory_file_set(int file, const void *data, size_t bytes);
 
-/** All that it holds, with a NUL after it, to be freed with free(); NULL: no memory. */
+/** All of its contents and a final NUL, to be freed with free(); NULL: no memory. */
 uint8_t *fl_memory_file_get(int file, size_t *bytes);
 
 #endif

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #define VISIBLE 24      // levels; a larger difference is visible
-#define MOST_VISIBLE 12 // pixels that may differ so; rounding at thin edges does
-#define GROSS 16        // mean square of the levels that a channel may differ by: 36 dB
+#define MOST_VISIBLE 12 // pixels that may differ this much; rounding at thin edges makes some
+#define GROSS 16        // mean squared difference allowed for a channel, levels squared: 36 dB
 #define HARD 1          // likewise where masks have a harder edge: 48 dB
 #define MOST_JUDGED 100 // leaves of a frame that are compared with their parts
 #define EDGE 8 // one in so many pixels of a masked group may differ: those at the mask's edge
@@ -160,7 +160,7 @@ static int compare(const uint32_t *a, const uint32_t *b, size_t n, size_t *where
     return visible;
 }
 
-/** A group (NULL: everything) as the file has it; NULL with an error. */
+/** A group (NULL: the whole file) as the file draws the group; NULL with an error. */
 static cairo_surface_t *draw_truth(const FlSelfCheck *check, FlSvg *svg, const char *group,
                                    FlPageSize page, GError **error)
 {
@@ -201,8 +201,9 @@ static FlVerdict judge(const FlSelfCheck *check, FlSvg *svg, const char *group, 
 }
 
 /**
- * The smallest group around a leaf that does not look as its leaves do: *group, NULL if none.
- * Groups inside a group with a mask cannot be checked alone: librsvg draws them without the mask.
+ * The smallest group around a leaf that does not look as its leaves do: *group, or NULL if all look
+ * the same. Groups inside a group with a mask cannot be checked alone: librsvg draws them without
+ * the mask.
  */
 static bool find_group(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, FlPageSize page,
                        char **group, GError **error)

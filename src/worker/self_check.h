@@ -34,8 +34,8 @@ FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, FlPageSize page, 
                                const char **leaf, GError **error);
 
 /**
- * Whether edges of masks are visibly harder than in the file: each shape has the mask by itself,
- * and where two of them overlap, what is half there is there twice.
+ * Returns: true if edges of masks are visibly harder than in the file. Each shape is masked by
+ * itself, so that half-transparent pixels are drawn twice if two shapes overlap.
  */
 bool fl_self_check_has_hard_masks(const FlSelfCheck *check);
 
@@ -50,10 +50,10 @@ typedef struct FlPiece {
 } FlPiece;
 
 /**
- * Whether a group looks the same when its n pieces are drawn over each other one by one: groups
- * with opacity or a mask do where nothing overlaps, and nearly so where a mask has sharp edges;
- * pixels that differ at a mask's edge will not count in fl_self_check_finish().
- * Returns: 1 or 0; -1 with an error.
+ * Compares a group with its n pieces drawn over each other one by one. Groups with opacity or a
+ * mask look the same if no pieces overlap, and nearly so where a mask has sharp edges; pixels that
+ * differ at a mask's edge will not count in fl_self_check_finish().
+ * Returns: 1 if they look the same, else 0; -1 with an error.
  */
 int fl_looks_alike(FlSelfCheck *check, FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n,
                    FlPageSize page, GError **error);

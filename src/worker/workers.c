@@ -35,7 +35,7 @@ typedef struct Worker {
 static struct {
     GMutex mutex; // of all here
     GCond freed;
-    pid_t host; // a process that was forked from it has none of its own
+    pid_t host; // a process that was forked from it has no workers of its own
     int n;
     Worker *worker;
     guint64 last_id;
@@ -44,7 +44,7 @@ static struct {
 
 /* ---- starting and ending --------------------------------------------------------------------- */
 
-/** Starts the processes if there are none. Returns: false if none can be started. */
+/** Starts the processes if they are not running. Returns: false if no process can be started. */
 static bool start_processes(void)
 {
     if (shared.host == getpid())
@@ -54,7 +54,7 @@ static bool start_processes(void)
     shared.host = getpid();
     shared.n = 0;
     const int wanted = fl_schedule_threads();
-    shared.worker = g_new0(Worker, wanted); // a parent's are left to it
+    shared.worker = g_new0(Worker, wanted); // a parent's workers are left to the parent
     while (shared.n < wanted && fl_process_start(&shared.worker[shared.n].process))
         shared.n++;
     return shared.n > 0;
@@ -117,7 +117,8 @@ __attribute__((destructor)) static void stop_processes(void)
 
 /* ---- who is free ----------------------------------------------------------------------------- */
 
-/** One that is free, if possible with these orders. *none: all are gone. */
+/** A free worker, if possible one with these orders; NULL: all are busy. Sets `none` if all are
+ * gone. */
 static Worker *first_free(guint64 id, bool *none)
 {
     Worker *found = NULL;

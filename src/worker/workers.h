@@ -47,8 +47,8 @@ bool fl_workers_ask(FlWorkers *workers, const FlRequest *request, const FlFileWa
 /** True if an error of fl_workers_ask() depends on the machine and its load, not on the file. */
 bool fl_is_by_chance(const GError *error);
 
-/** The part of the sandbox that is missing, as a sentence; NULL: all are there, or no worker has
- * answered yet. */
+/** The part of the sandbox that is missing, as a sentence; NULL: no part is missing, or no worker
+ * has answered yet. */
 const char *fl_workers_lack(const FlWorkers *workers);
 
 void fl_answer_clear(FlAnswer *answer);
