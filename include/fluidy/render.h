@@ -226,6 +226,17 @@ typedef struct FlRenderOptions {
 } FlRenderOptions;
 
 /**
+ * Starts the processes that read and draw drawings, in a sandbox, for all drawings of this program.
+ *
+ * The library starts them with the first drawing, but only a process with one thread may fork: call
+ * this first in a program that starts threads. It forks; the processes end with the program.
+ *
+ * Returns: false if none could be started; drawings are then read without a sandbox, with a
+ * warning.
+ */
+FL_API bool fl_start_workers(void);
+
+/**
  * Renders. Each file appears under its name when it is complete.
  *
  * While frames are painted, a hidden file beside them, .NAME.state, holds the state that the next

@@ -272,6 +272,7 @@ static int watch(FlArgs *args, Reporter *reporter)
     if (!can_reread_config(args, "--watch", &error))
         return fail(args, error);
     int status = -1;
+    (void)fl_start_workers(); // before the watch starts a thread; a reading without them warns
     g_autoptr(FlFileWatch) before = NULL;
     while (status < 0) {
         FlFileWatch *files = fl_file_watch_new(&args->render);

@@ -60,6 +60,14 @@ static bool start_processes(void)
     return shared.n > 0;
 }
 
+bool fl_start_workers(void)
+{
+    g_mutex_lock(&shared.mutex);
+    const bool started = start_processes();
+    g_mutex_unlock(&shared.mutex);
+    return started;
+}
+
 FlWorkers *fl_workers_new(const char *const *paths, FlSandboxing sandbox, bool apart,
                           GError **error)
 {
