@@ -77,7 +77,8 @@ FlRect fl_reader_rect(FlReader *reader, FlRect page)
     FlRect rect;
     fl_reader_copy(reader, &rect, sizeof rect);
     reader->failed = reader->failed || !fl_rect_is_inside(rect, page);
-    return reader->failed ? (FlRect){0} : rect;
+    const FlRect nothing = {0};
+    return reader->failed ? nothing : rect;
 }
 
 int fl_take_int(FlReader *r)

@@ -45,10 +45,12 @@ static void mix_rows(const Picture *picture, int y, float *sums)
     memset(sums, 0, (last + 8) * sizeof *sums);
     add_row(picture, y / 2, 3, sums);
     add_row(picture, y % 2 ? y / 2 + 1 : y / 2 - 1, 1, sums);
-    if (box.x == 0)
-        memcpy(sums, sums + 4, 4 * sizeof *sums);
-    if (box.x + box.width == picture->width)
-        memcpy(sums + last + 4, sums + last, 4 * sizeof *sums);
+    for (int c = 0; c < 4; c++) {
+        if (box.x == 0)
+            sums[c] = sums[4 + c];
+        if (box.x + box.width == picture->width)
+            sums[last + 4 + (size_t)c] = sums[last + (size_t)c];
+    }
 }
 
 static void write_row(const Picture *picture, const float *sums, int y, void *rgba)

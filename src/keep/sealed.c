@@ -119,7 +119,7 @@ static size_t break_seal(const uint8_t *data, size_t bytes, bool *damaged)
 GBytes *fl_sealed_read(const char *path, bool *damaged)
 {
     size_t bytes = 0;
-    bool unused;
+    bool unused = false;
     bool *bad = damaged ? damaged : &unused;
     *bad = false;
     const int fd = open_regular(path, &bytes);

@@ -470,7 +470,7 @@ static void set_value(xmlNode *node, const char *name, const char *value)
 
 static char *base_value(const xmlNode *node, const char *name)
 {
-    char *value = fl_property(node, name);
+    g_autofree char *value = fl_property(node, name);
     const FlCssProperty *property = value ? NULL : fl_css_property(name);
     if (!value)
         value = fl_foreign_attribute(node, name);
@@ -479,7 +479,7 @@ static char *base_value(const xmlNode *node, const char *name)
     char *important = value ? strstr(value, "!important") : NULL;
     if (important)
         *important = '\0', g_strchomp(value);
-    return value ? value : g_strdup("0");
+    return value ? g_steal_pointer(&value) : g_strdup("0");
 }
 
 /** animateTransform: its function with the values as arguments, after or in place of others. */

@@ -29,7 +29,8 @@ typedef struct Worker {
     FlProcess process;
     guint64 id;      // of those it works for; 0: it was not started, or has ended
     uint64_t number; // of its last ticket
-    bool busy, gone;
+    bool busy;
+    atomic_bool gone; // set by the thread that uses it, read by those that look for a free one
 } Worker;
 
 static struct {
@@ -178,13 +179,15 @@ static bool receive_report(Worker *w, FlWorkerReport *report)
     do
         n = recv(w->process.control, report, sizeof *report, MSG_WAITALL);
     while (n < 0 && errno == EINTR);
-    w->gone |= n != (ssize_t)sizeof *report;
+    if (n != (ssize_t)sizeof *report)
+        w->gone = true;
     return !w->gone;
 }
 
 static bool send_order(Worker *w, FlOrder order)
 {
-    w->gone |= send(w->process.control, &order, sizeof order, MSG_NOSIGNAL) != sizeof order;
+    if (send(w->process.control, &order, sizeof order, MSG_NOSIGNAL) != sizeof order)
+        w->gone = true;
     return !w->gone;
 }
 
