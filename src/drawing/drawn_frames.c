@@ -90,7 +90,7 @@ FlDrawList *fl_drawing_draw_by_hand(const FlDrawing *drawing, int frame, const F
 {
     g_assert(frame >= 0 && frame < drawing->sequence->n);
     const FlDrawingFrame *f = &drawing->frame[frame];
-    const bool by_hand = fl_steps_need_hand(f->step, f->n, hand);
+    const bool by_hand = hand && fl_steps_need_hand(f->step, f->n, hand);
     g_autoptr(GBytes) kept = by_hand ? NULL : find_kept((FlDrawing *)drawing, frame);
     if (kept)
         return unpack(drawing, frame, g_bytes_get_data(kept, NULL), g_bytes_get_size(kept), error);
