@@ -327,11 +327,12 @@ static void without_processes_that_is_an_error(void)
     if (!has_processes())
         return;
     const int n = children_of(getpid(), starter, WORKERS);
-    g_assert_cmpint(n, ==, WORKERS);
-    end_process(starter[0]);
-    assert_draws(&film);
-    for (int i = 1; i < n; i++)
+    g_assert_cmpint(n, ==, fl_schedule_threads()); // one without OpenMP
+    for (int i = 0; i < n; i++) {
+        if (i > 0)
+            assert_draws(&film); // by those that are left
         end_process(starter[i]);
+    }
     g_autoptr(GError) error = NULL;
     g_assert_null(fl_drawing_draw_list(film.drawing, 0, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_NO_MEMORY);

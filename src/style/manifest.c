@@ -144,12 +144,21 @@ bool fl_manifest_read(FlStyle *style, const char *path, GError **error)
     return fl_key_file_read(path, &calls, error);
 }
 
+/* Returns: true if the fronts are those of styles that say nothing of them. */
+static bool has_plain_front(const FlFrontStyle *front)
+{
+    const FlFrontStyle plain = FL_FRONT_DEFAULTS;
+    return front->width == plain.width && front->stain == plain.stain &&
+           front->film == plain.film && front->soft == plain.soft && front->base == plain.base &&
+           front->line == plain.line && front->fingers == plain.fingers &&
+           front->granulation == plain.granulation;
+}
+
 /* The section of fronts, unless it is as in styles without one. */
 static void append_front(const FlStyle *style, GString *text)
 {
-    const FlFrontStyle plain = FL_FRONT_DEFAULTS;
     char number[G_ASCII_DTOSTR_BUF_SIZE];
-    if (memcmp(&plain, &style->front, sizeof plain) == 0)
+    if (has_plain_front(&style->front))
         return;
     g_string_append(text, "\n[front]\n");
     for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {

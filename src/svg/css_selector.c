@@ -123,7 +123,7 @@ static bool read_attribute(const char **s, Simple *simple)
     if (*at != '=' && (!strchr("~|^$*", *at) || *++at != '='))
         return false;
     at = fl_css_space(at + 1);
-    const char *rest = at;
+    const char *rest;
     if (*at == '"' || *at == '\'') {
         rest = fl_css_find(at, FL_CSS_SPACE);
         g_autofree char *quoted = g_strndup(at, (gsize)(rest - at));

@@ -67,13 +67,18 @@ static bool measure(FlServant *servant, const FlRequest *r, GByteArray *out, GEr
     return true;
 }
 
+static bool is_same_canvas(const FlCanvas *a, const FlCanvas *b)
+{
+    return a->x == b->x && a->y == b->y && a->width == b->width && a->height == b->height;
+}
+
 /** True if a request is about the frame that was measured. */
 static bool is_measured(const FlServant *servant, const FlRequest *r)
 {
     const FlSvgOptions *a = &servant->svg, *b = &r->svg;
     return servant->file && strcmp(servant->file, r->file) == 0 && !b->whole &&
-           memcmp(&a->canvas, &b->canvas, sizeof a->canvas) == 0 && a->dpi == b->dpi &&
-           a->from == b->from && a->layer == b->layer && a->seconds == b->seconds;
+           is_same_canvas(&a->canvas, &b->canvas) && a->dpi == b->dpi && a->from == b->from &&
+           a->layer == b->layer && a->seconds == b->seconds;
 }
 
 /* ---- survey, outlines, draw ------------------------------------------------------------------ */
