@@ -247,7 +247,12 @@ bool fl_process_may_fork(void)
  */
 static pid_t fork_apart(void)
 {
-    const unsigned long spaces = CLONE_NEWPID | CLONE_NEWIPC | (geteuid() == 0 ? 0 : CLONE_NEWUSER);
+#ifdef __clang__ // LLVM's OpenMP has a file per PID in /dev/shm; two namespaces would collide
+    const unsigned long pids = 0;
+#else
+    const unsigned long pids = CLONE_NEWPID;
+#endif
+    const unsigned long spaces = pids | CLONE_NEWIPC | (geteuid() == 0 ? 0 : CLONE_NEWUSER);
     const pid_t pid = (pid_t)syscall(SYS_clone, spaces | SIGCHLD, 0, 0, 0, 0);
     return pid >= 0 ? pid : fork();
 }
