@@ -245,7 +245,8 @@ static void take_warnings(FlReader *reader, FlWarnings *warnings)
                        .element = (char *)fl_take_text(reader),
                        .text = (char *)fl_take_text(reader)};
         fl_reader_copy(reader, &w.frame, 3 * sizeof(int));
-        if (fl_take_check(reader, w.n_frames >= 1) && warnings)
+        if (fl_take_check(reader, w.n_frames >= 1 && w.n_frames <= FL_MOST_INNER_FRAMES) &&
+            warnings)
             fl_warnings_repeat(warnings, &w);
     }
 }

@@ -21,13 +21,14 @@ static void check_record(const uint8_t *data, size_t size)
 static void check_past(GBytes *bytes)
 {
     const FlExemplarLevel level = {.width = 40, .height = 30, .n_frames = 5};
-    uint8_t mask[SIDE * SIDE], rgb[3 * SIDE * SIDE];
+    uint8_t mask[SIDE * SIDE], wet[SIDE * SIDE], rgb[3 * SIDE * SIDE];
     g_autoptr(GError) error = NULL;
     FlSynthState state = {.width = SIDE,
                           .height = SIDE,
                           .painted_width = SIDE,
                           .painted_height = SIDE,
                           .mask = mask,
+                          .wet = wet,
                           .rgb = rgb};
     const bool read = fl_synth_state_unpack(&state, bytes, &level, &error);
     g_assert_true(read == (error == NULL));
