@@ -14,10 +14,9 @@ echo "<svg xmlns='http://www.w3.org/2000/svg' width='100' height='60'>" \
 echo "<svg xmlns='http://www.w3.org/2000/svg' width='1000' height='300'>" \
     "<circle cx='60' cy='60' r='40' fill='#4f7d9f'/></svg>" >page/a_1.svg
 
-# size WIDTH ARGUMENT...: of the texture of a wash, in 1/100000 of the page. In fine quality: what is asked is whether the
-# recording has the page's size, and a field of half the size makes seams of its own, which weigh more on a small page.
+# size WIDTH ARGUMENT...: of the texture of a wash, in 1/100000 of the page.
 size() {
-    "$program" wash -s "$bundled/05" --detail fine --paper none -q -W "$1" -o "wash_$1_%d.png" -y "${@:2}" >out 2>err &&
+    "$program" wash -s "$bundled/05" --paper none -q -W "$1" -o "wash_$1_%d.png" -y "${@:2}" >out 2>err &&
         "$texture" "wash_$1_1.png" | tr -d .
 }
 small=$(size 500) large=$(size 1000) pixels=$(size 500 --style-by-page off)

@@ -72,39 +72,37 @@ static void make_pieces(FlNnf *nnf, const FlExemplarLevel *level)
     }
 }
 
-/* Each match is heard once in place of four: roundings differ, and nothing else. */
-static void an_enlarged_field_votes_as_one_of_twice_the_size(void)
+/* Clusters of the larger size are smaller in the recording: where pieces meet, votes differ. */
+static void an_enlarged_picture_is_that_of_its_field_in_detail(void)
 {
     g_auto(Style) style = {0};
     style_init(&style, 0);
     const FlExemplarLevel *half = &style.exemplar->level[0];
-    g_autoptr(FlExemplar) whole = fl_exemplar_new(style.full, style.params, NULL);
     FlKernels kernels;
-    g_auto(FlNnf) nnf = {0}, large = {0};
-    g_auto(FlBlocks) blocks = {0}, all = {0};
+    g_auto(FlNnf) nnf = {0};
+    g_auto(FlBlocks) blocks = {0};
     g_autofree uint8_t *rgb = g_malloc0(3 * STYLE_W * STYLE_H);
     g_autofree uint8_t *voted = g_malloc0(STYLE_W * STYLE_H);
     g_autofree float *colour = g_new0(float, 3 * STYLE_W * STYLE_H);
     const FlEnlarged enlarged = {&kernels, 4, STYLE_W, STYLE_H, rgb};
     fl_kernels_init(&kernels, fl_cpu_flags());
-    g_assert_true(fl_nnf_init(&nnf, half->width, half->height, NULL) &&
-                  fl_nnf_init(&large, STYLE_W, STYLE_H, NULL));
+    g_assert_true(fl_nnf_init(&nnf, half->width, half->height, NULL));
     make_pieces(&nnf, half);
     fl_blocks_init_full(&blocks, nnf.width, nnf.height);
     fl_enlarge(style.exemplar->enlargement, &nnf, &blocks, (FlRect){0, 0, nnf.width, nnf.height},
                &enlarged);
-    fl_blocks_init_full(&all, STYLE_W, STYLE_H);
-    fl_nnf_upscale(&nnf, &whole->level[0], &kernels, &all, &large);
-    fl_vote(&large, NULL, &whole->level[0], &kernels, 4, 3, colour, voted);
+    fl_vote(&nnf, NULL, half, &kernels, 4, 3, colour, voted);
     double sum = 0;
     int n = 0;
-    for (int p = 0; p < STYLE_W * STYLE_H; p++) {
-        g_assert_cmpint(rgb[3 * p] + rgb[3 * p + 1] + rgb[3 * p + 2] > 0, ==, voted[p]);
+    for (int p = 0; p < nnf.width * nnf.height; p++) {
+        const uint8_t *at = rgb + 6 * (p / nnf.width * STYLE_W + p % nnf.width);
+        g_assert_cmpint(at[0] + at[1] + at[2] > 0, ==, voted[p]);
         for (int c = 0; c < 3 && voted[p]; c++, n++)
-            sum += abs(rgb[3 * p + c] - fl_vote_byte(colour[3 * p + c]));
+            sum += abs((at[c] + at[c + 3] + at[c + 3 * STYLE_W] + at[c + 3 * STYLE_W + 3] + 2) / 4 -
+                       fl_vote_byte(colour[3 * p + c]));
     }
     g_test_message("mean difference of %d values: %.3f levels", n, sum / n);
-    g_assert_cmpfloat(sum / n, <, 0.3);
+    g_assert_cmpfloat(sum / n, <, 1.5);
 }
 
 static void a_halved_style_is_the_mean_of_its_pixels(void)
@@ -307,7 +305,7 @@ int main(int argc, char **argv)
     TEST(a_style_of_an_odd_size_loses_nothing);
     TEST(a_half_has_the_margin_of_the_whole);
     TEST(own_places_give_the_frame_in_full_size);
-    TEST(an_enlarged_field_votes_as_one_of_twice_the_size);
+    TEST(an_enlarged_picture_is_that_of_its_field_in_detail);
     TEST(a_window_follows_that_of_the_exemplar);
     TEST(pictures_have_twice_the_size_and_paint_in_the_mask);
     TEST(a_part_at_rest_keeps_its_picture);

@@ -170,27 +170,11 @@ typedef struct FlVoteCluster {
 typedef bool (*FlVote)(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4]);
 
 /**
- * The same for the four pixels, row by row, that a pixel is in twice the size, in which `voted` is:
- * what votes would say there if each match were four. Of the patches around a pixel the nine next
- * to it cover its four, some of them twice along a row or column.
+ * The same for the four pixels, row by row, that a pixel is in twice the size, which `voted` has.
+ * All patches over the pixel vote, each for the same part of its match as in the search.
  */
 typedef bool (*FlVoteDoubled)(const FlVoteMatches *covering, const FlVoteSource *voted,
                               float colour[4][4]);
-
-/** Bit masks of the FL_PATCH_PIXELS votes around a pixel: the votes next to it, in either order;
- * and the votes that count twice for child 0 or 1 along an axis, by lines of FL_PATCH and by places
- * in these lines. */
-#define FL_VOTES_BESIDE 0x739c0u
-#define FL_LINES_TWICE(child) (0x7fe0u << (FL_PATCH * (child)))
-#define FL_PLACES_TWICE(child) (0x6318c6u << (child))
-
-/** The number of votes at twice the size that a cluster's votes make for a child. */
-static inline int fl_votes_doubled(uint32_t votes, uint32_t lines_twice, uint32_t places_twice)
-{
-    return __builtin_popcount(votes) + __builtin_popcount(votes & lines_twice) +
-           __builtin_popcount(votes & places_twice) +
-           __builtin_popcount(votes & lines_twice & places_twice);
-}
 
 #define FL_OFF_ONE 8
 

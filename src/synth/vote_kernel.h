@@ -58,16 +58,14 @@ static inline bool fl_vote_of(const FlVotes *votes, FlClusterVotes cluster_votes
     return n > 0;
 }
 
-/* Votes are column by column: child % 2 is along lines. */
 static inline void add_children(Sum sum[4], const FlVoteCluster *cluster, const int16_t turn[2],
                                 FlSplineSample sample, const FlVoteSource *voted)
 {
+    const int n = __builtin_popcount(cluster->votes);
     const int x = mean_of(cluster->x, cluster->sum_x, cluster->votes);
     const int y = mean_of(cluster->y, cluster->sum_y, cluster->votes);
     for (int child = 0; child < 4; child++) {
         const FlOffset move = fl_child_move(turn, child % 2, child / 2);
-        const int n =
-            fl_votes_doubled(cluster->votes, FL_LINES_TWICE(child % 2), FL_PLACES_TWICE(child / 2));
         add_cluster(&sum[child], cluster, n, x + move.x, y + move.y, sample, voted);
     }
 }
@@ -82,8 +80,6 @@ static inline bool fl_vote_doubled_of(FlVotes *votes, const int16_t (*turn)[2],
     for (int k = 0; k < FL_PATCH_PIXELS; k++) {
         votes->x[k] = (uint16_t)(2 * votes->x[k] - FL_VOTE_BIAS);
         votes->y[k] = (uint16_t)(2 * votes->y[k] - FL_VOTE_BIAS);
-        if (!(FL_VOTES_BESIDE >> k & 1))
-            votes->frame[k] = FL_NO_MATCH;
     }
     const int n = cluster_votes(votes, clusters);
     for (const FlVoteCluster *o = clusters; o < clusters + n; o++)

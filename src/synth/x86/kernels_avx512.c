@@ -402,43 +402,41 @@ bool fl_vote_avx512(const FlVoteMatches *covering, const FlVoteSource *voted, fl
     return true;
 }
 
-/* The places of four times as many votes in twice the size. */
+/* Places in twice the size. */
 static inline __m512i doubled(__m512i places)
 {
     return _mm512_sub_epi16(_mm512_slli_epi16(places, 1), _mm512_set1_epi16(FL_VOTE_BIAS));
 }
 
-/* Votes are row by row: child / 2 is along lines. */
 bool fl_vote_doubled_avx512(const FlVoteMatches *covering, const FlVoteSource *voted,
                             float colour[4][4])
 {
     const __m512i frames = rows_of(_mm512_loadu_si512(covering->frame));
-    __mmask32 left = FL_VOTES_BESIDE & ~_mm512_movepi16_mask(frames);
+    __mmask32 left = ((1u << FL_PATCH_PIXELS) - 1) & ~_mm512_movepi16_mask(frames);
     if (!left)
         return false;
     const Places half = places_of(covering);
     const Places at = {doubled(half.x), doubled(half.y), half.frame};
     __m128 sum[4] = {_mm_setzero_ps(), _mm_setzero_ps(), _mm_setzero_ps(), _mm_setzero_ps()};
-    float total[4] = {0};
+    float total = 0;
     while (left) {
         Places first;
         const int leader = __builtin_ctz(left);
         const __mmask32 votes = agreeing(&at, left, &first);
-        const __m128i place = place_of(&at, votes, __builtin_popcount(votes), &first);
+        const int n = __builtin_popcount(votes);
+        const __m128i place = place_of(&at, votes, n, &first);
         const int16_t *turn = covering->turn[leader % FL_PATCH * FL_PATCH + leader / FL_PATCH];
         for (int child = 0; child < 4; child++) {
             const FlOffset move = fl_child_move(turn, child % 2, child / 2);
-            const int n =
-                fl_votes_doubled(votes, FL_LINES_TWICE(child / 2), FL_PLACES_TWICE(child % 2));
             const __m128i moved = _mm_add_epi32(place, _mm_set_epi64x(move.y, move.x));
             sum[child] =
                 add_weighted(sum[child], voted->weight[n], cluster_colour(&first, moved, voted));
-            total[child] += voted->weight[n];
         }
+        total += voted->weight[n];
         left &= ~votes;
     }
     for (int child = 0; child < 4; child++)
-        store_colour(sum[child], total[child], colour[child]);
+        store_colour(sum[child], total, colour[child]);
     return true;
 }
 
