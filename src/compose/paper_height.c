@@ -26,31 +26,31 @@ enum {
  * fine_dev are those of the sum over a large sheet; they do not depend on the picture, or a crop of
  * it would have another paper. */
 static const FlPaperGrain grains[FL_PAPER_KINDS] = {
-    [FL_PAPER_COLD] = {.grain = 7, .stretch = 1.35f, .warp = .35f, .crease = .30f, .tooth = .30f,
+    [FL_PAPER_COLD] = {.grain = 6.5f, .stretch = 1.3f, .warp = .45f, .crease = .25f, .tooth = .25f,
                        .tooth_stretch = 1, .fibre = .15f, .fibres = 2.2f, .fibre_px = 26, .fibre_mean = 0.049f, .fibre_dev = 0.157f,
-                       .mean = 0.146f, .dev = 0.639f, .slope_dev = 0.507f, .fine_dev = 0.863f,
+                       .mean = 0.121f, .dev = 0.618f, .slope_dev = 0.629f, .fine_dev = 0.854f,
                        .relief = .017f, .cloud = .005f, .streak = .002f, .warm = .004f,
                        .colour = {0xf5, 0xf0, 0xe6}},
-    [FL_PAPER_HOT] = {.grain = 8, .stretch = 1.3f, .warp = .35f, .crease = .12f, .tooth = .65f,
+    [FL_PAPER_HOT] = {.grain = 6.5f, .stretch = 1.3f, .warp = .45f, .crease = .12f, .tooth = .45f,
                       .tooth_stretch = 1.3f, .fibre = .40f, .fibres = 2.2f, .fibre_px = 26, .fibre_mean = 0.049f, .fibre_dev = 0.157f,
-                      .mean = 0.058f, .dev = 0.674f, .slope_dev = 0.513f, .fine_dev = 0.849f,
+                      .mean = 0.060f, .dev = 0.642f, .slope_dev = 0.632f, .fine_dev = 0.857f,
                       .relief = .0105f, .cloud = .006f, .streak = .003f, .warm = .004f,
                       .colour = {0xf8, 0xf5, 0xee}},
-    [FL_PAPER_ROUGH] = {.grain = 11, .stretch = 1.15f, .warp = .2f, .crease = .25f, .tooth = .50f,
+    [FL_PAPER_ROUGH] = {.grain = 9, .stretch = 1.15f, .warp = .35f, .crease = .25f, .tooth = .40f,
                         .tooth_stretch = 1, .fibre = .30f, .fibres = 4, .fibre_px = 16, .fibre_mean = 0.054f, .fibre_dev = 0.165f,
-                        .mean = 0.122f, .dev = 0.661f, .slope_dev = 0.459f, .fine_dev = 0.777f,
+                        .mean = 0.121f, .dev = 0.648f, .slope_dev = 0.588f, .fine_dev = 0.802f,
                         .relief = .024f, .cloud = .006f, .streak = .002f, .warm = .004f,
                         .colour = {0xf3, 0xee, 0xe4}},
-    [FL_PAPER_LAID] = {.grain = 7, .stretch = 1.5f, .warp = .35f, .crease = .15f, .tooth = .55f,
+    [FL_PAPER_LAID] = {.grain = 6, .stretch = 1.4f, .warp = .45f, .crease = .15f, .tooth = .55f,
                        .tooth_stretch = 1, .fibre = .40f, .fibres = 4, .fibre_px = 16, .fibre_mean = 0.054f, .fibre_dev = 0.165f,
-                       .laid = .8f, .line = 8.5f,
-                       .mean = 0.029f, .dev = 0.579f, .slope_dev = 0.529f, .fine_dev = 0.872f,
+                       .laid = .8f, .line = 6,
+                       .mean = 0.030f, .dev = 0.579f, .slope_dev = 0.654f, .fine_dev = 0.876f,
                        .relief = .0125f, .cloud = .008f, .streak = .003f, .warm = .006f,
                        .flecks = .05f, .colour = {0xee, 0xe6, 0xd4}, .tinted = true},
-    [FL_PAPER_KRAFT] = {.grain = 6, .stretch = 2.2f, .warp = .35f, .crease = .15f, .tooth = .95f,
+    [FL_PAPER_KRAFT] = {.grain = 5, .stretch = 2, .warp = .45f, .crease = .15f, .tooth = .95f,
                         .tooth_stretch = 1.9f, .fibre = .55f, .fibres = 9, .fibre_px = 11, .fibre_mean = 0.083f, .fibre_dev = 0.199f,
                         .laid = .1f, .line = 6,
-                        .mean = 0.050f, .dev = 0.580f, .slope_dev = 0.586f, .fine_dev = 0.894f,
+                        .mean = 0.051f, .dev = 0.581f, .slope_dev = 0.665f, .fine_dev = 0.893f,
                         .relief = .019f, .cloud = .013f, .streak = .009f, .warm = .012f,
                         .flecks = .09f, .colour = {0xc4, 0xa4, 0x7c}, .tinted = true},
 };
@@ -190,7 +190,7 @@ static void find_surface(const FlPaperPlace *place, const Stretch *at, const flo
         creases.x[i] = 1.7f * bumps.x[i], creases.y[i] = 1.7f * bumps.y[i];
         teeth.x[i] = at->x[i] / (2.2f * p->tooth_stretch), teeth.y[i] = at->y[i] / 2.2f;
     }
-    octaves_at(place, KEY_BUMPS, &bumps, p->grain > 10 ? 3 : 2, .55f, bump);
+    octaves_at(place, KEY_BUMPS, &bumps, 3, 1, bump);
     noise_at(place, KEY_CREASES, &creases, crease);
     octaves_at(place, KEY_TOOTH, &teeth, 2, .8f, tooth);
     for (int i = 0; i < at->n; i++)

@@ -28,7 +28,7 @@ typedef struct FlPaperGrain {
     float fibre_mean, fibre_dev;        // of what they cover, as drawn
     float laid, line;                   // weight of laid lines and their distance; 0: no lines
     float mean, dev, slope_dev;         // of the height, and of its slope once it is normalised
-    float fine_dev;                     // of its structures finer than 4 px
+    float fine_dev;                     // of its structures finer than 2.5 px
     float relief, cloud, streak, warm;  // shares of light: of the relief, of slow clouds, of
                                         // fibres, and of blue that comes and goes
     float flecks;                       // darkness of flecks; 0: the paper has no flecks

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-#define FINE_PX 4       // wider structures are not part of the tooth
+#define FINE_PX 2.5f    // wider structures are not part of the tooth
 #define TOOTH_END 2.2f  // standard deviations
 #define SLOW_PX 8       // clouds and warmth are known every so many px
 #define ROOM_PX 256     // that the sheet is larger than a frame if other parts of it are wanted
