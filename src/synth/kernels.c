@@ -217,16 +217,4 @@ void fl_kernels_init(FlKernels *kernels, unsigned flags)
                                fl_vote_doubled_avx2,    fl_upscale_row_avx2,
                                fl_fluid_distance_avx2,  "avx2"};
 #endif
-#if HAVE_AVX512
-    if (flags & FL_CPU_AVX512) {
-        kernels->patch_distance = fl_patch_distance_avx512;
-        kernels->patch_pair = fl_patch_pair_avx512;
-        kernels->draw_candidates = fl_draw_candidates_avx512;
-        kernels->filter_candidates = fl_filter_candidates_avx512;
-        kernels->vote = fl_vote_avx512;
-        kernels->vote_doubled = fl_vote_doubled_avx512;
-        kernels->upscale_row = fl_upscale_row_avx512;
-        kernels->name = "avx512";
-    }
-#endif
 }

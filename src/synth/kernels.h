@@ -219,32 +219,22 @@ uint32_t fl_patch_distance_c(const FlTexel *centre, const int16_t *offsets, bool
 uint32_t fl_patch_distance_avx2(const FlTexel *centre, const int16_t *offsets, bool opposed,
                                 const FlTargetTexel *target, const FlTargetTexel *rest,
                                 uint32_t limit);
-uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                  const FlTargetTexel *target, const FlTargetTexel *rest,
-                                  uint32_t limit);
 uint32_t fl_patch_distance_neon(const FlTexel *centre, const int16_t *offsets, bool opposed,
                                 const FlTargetTexel *target, const FlTargetTexel *rest,
                                 uint32_t limit);
 
 void fl_patch_pair_avx2(const FlTexel *centre, const int16_t *offsets, const FlTargetTexel *target,
                         const FlTargetTexel *rest, uint32_t limit, uint32_t distance[2]);
-void fl_patch_pair_avx512(const FlTexel *centre, const int16_t *offsets,
-                          const FlTargetTexel *target, const FlTargetTexel *rest, uint32_t limit,
-                          uint32_t distance[2]);
 
 void fl_draw_candidates_c(const FlSearchWindows *windows, const uint16_t centre[3], uint32_t key,
                           FlCandidates *candidates);
 void fl_draw_candidates_avx2(const FlSearchWindows *windows, const uint16_t centre[3], uint32_t key,
                              FlCandidates *candidates);
-void fl_draw_candidates_avx512(const FlSearchWindows *windows, const uint16_t centre[3],
-                               uint32_t key, FlCandidates *candidates);
 
 uint64_t fl_filter_candidates_c(const FlCandidates *candidates, int n,
                                 const FlCandidateFilter *filter, uint32_t *uniformity);
 uint64_t fl_filter_candidates_avx2(const FlCandidates *candidates, int n,
                                    const FlCandidateFilter *filter, uint32_t *uniformity);
-uint64_t fl_filter_candidates_avx512(const FlCandidates *candidates, int n,
-                                     const FlCandidateFilter *filter, uint32_t *uniformity);
 
 void fl_spline_sample_c(const FlSplinePixel *first, size_t pitch, const int16_t *x, const float *y,
                         float value[4]);
@@ -253,20 +243,15 @@ void fl_spline_sample_avx2(const FlSplinePixel *first, size_t pitch, const int16
 
 bool fl_vote_c(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4]);
 bool fl_vote_avx2(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4]);
-bool fl_vote_avx512(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4]);
 
 bool fl_vote_doubled_c(const FlVoteMatches *covering, const FlVoteSource *voted,
                        float colour[4][4]);
 bool fl_vote_doubled_avx2(const FlVoteMatches *covering, const FlVoteSource *voted,
                           float colour[4][4]);
-bool fl_vote_doubled_avx512(const FlVoteMatches *covering, const FlVoteSource *voted,
-                            float colour[4][4]);
 
 void fl_upscale_row_c(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
                       FlMatch *fine, int n);
 void fl_upscale_row_avx2(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
                          FlMatch *fine, int n);
-void fl_upscale_row_avx512(const FlMatch *coarse, const FlOffset (*moves)[2],
-                           const uint16_t most[2], FlMatch *fine, int n);
 
 #endif
