@@ -223,6 +223,106 @@ static void mistakes_leave_the_film_as_it_was(void)
     g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
 }
 
+static void drafts_come_at_once_and_leave_frames_alone(void)
+{
+    g_autoptr(Case) test = case_new();
+    g_autoptr(GError) error = NULL;
+    fl_film_set_draft_side(test->film, 36);
+    const FlFilmFrame *draft = fl_film_draft(test->film, 4, &error);
+    g_assert_no_error(error);
+    g_assert_cmpint(draft->frame, ==, 4);
+    g_assert_cmpint(draft->width, ==, 36);
+    g_assert_cmpint(draft->height, ==, 28);
+    g_assert_cmpint(painted(test->film), ==, 2); // as if the film began with it
+    g_assert_nonnull(fl_film_draft(test->film, 5, &error));
+    g_assert_cmpint(painted(test->film), ==, 4);
+    g_assert_nonnull(fl_film_draft(test->film, 1, &error));
+    g_assert_nonnull(fl_film_draft(test->film, 2, &error));
+    g_assert_cmpint(painted(test->film), ==, 8);
+    write_film(test);
+    assert_as_written(test, 4);
+    g_assert_cmpint(fl_film_stats(test->film)->n_read, ==, 2);
+}
+
+static void set_config(const Case *test, const char *rest)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *path = g_build_filename(test->folder, "film.conf", NULL);
+    g_autofree char *text = g_strdup_printf("[defaults]\nstyle = %s\n%s", test->other_style, rest);
+    fl_film_set_config(test->film, path, text, &error);
+    g_assert_no_error(error);
+}
+
+static void a_config_of_text_reads_no_drawing_anew(void)
+{
+    g_autoptr(Case) test = case_new();
+    set(test->film, NULL, "style", NULL);
+    set_config(test, "");
+    g_autofree uint8_t *plain = frame_of(test->film, 3);
+    set_config(test, "[region red-*]\ntint = #11aa55\n");
+    g_autofree uint8_t *tinted = frame_of(test->film, 3);
+    g_assert_true(memcmp(plain, tinted, 4 * WIDTH * HEIGHT) != 0);
+    g_assert_cmpint(fl_film_stats(test->film)->n_read, ==, 1);
+    write_film(test);
+    assert_as_written(test, 3);
+    set_config(test, "");
+    g_autofree uint8_t *again = frame_of(test->film, 3);
+    g_assert_cmpmem(again, 4 * WIDTH * HEIGHT, plain, 4 * WIDTH * HEIGHT);
+    g_assert_cmpint(fl_film_stats(test->film)->n_read, ==, 1);
+    set_config(test, "[region red-aa3311]\npassthrough = on\n"); // another set of regions
+    g_free(frame_of(test->film, 3));
+    g_assert_cmpint(fl_film_stats(test->film)->n_read, ==, 2);
+    g_autoptr(GError) error = NULL;
+    g_assert_false(fl_film_set_config(test->film, "film.conf", "[defaults]\nstile = 1\n", &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
+    g_assert_true(g_str_has_prefix(error->message, "film.conf:2: "));
+}
+
+static bool count_down(void *data)
+{
+    return g_atomic_int_dec_and_test((int *)data);
+}
+
+static void a_frame_can_be_stopped_within(void)
+{
+    g_autoptr(Case) test = case_new();
+    g_autoptr(GError) error = NULL;
+    g_autofree uint8_t *first = frame_of(test->film, 2);
+    int left = 4; // regions until it stops
+    const FlFilmCalls calls = {.size = sizeof calls, .stopped = count_down, .data = &left};
+    fl_film_set_calls(test->film, &calls);
+    set(test->film, NULL, "w-temp", "3");
+    g_assert_null(fl_film_frame(test->film, 2, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_INTERRUPTED);
+    set(test->film, NULL, "w-temp", NULL);
+    g_autofree uint8_t *again = frame_of(test->film, 2);
+    g_assert_cmpmem(again, 4 * WIDTH * HEIGHT, first, 4 * WIDTH * HEIGHT);
+}
+
+static void regions_and_drawings_are_told(void)
+{
+    g_autoptr(Case) test = case_new();
+    g_autoptr(GError) error = NULL;
+    int n = 0;
+    const FlFilmRegion *region = fl_film_regions(test->film, &n, &error);
+    g_assert_no_error(error);
+    g_assert_cmpint(n, ==, 2);
+    g_assert_cmpstr(region[1].name, ==, "red-aa3311");
+    g_assert_cmpstr(region[1].style, ==, test->style);
+    const uint8_t colour[] = {region[1].colour[0], region[1].colour[1], region[1].colour[2]};
+    const FlFilmFrame *map = fl_film_map(test->film, 0, &error);
+    g_assert_no_error(error);
+    const uint8_t *within =
+        map->rgba + 4 * ((size_t)(30 * map->height / HEIGHT) * (size_t)map->width +
+                         (size_t)(40 * map->width / WIDTH));
+    g_assert_cmpmem(within, 3, colour, 3);
+    const FlFilmFrame *drawing = fl_film_drawing(test->film, 0, &error);
+    g_assert_no_error(error);
+    within = drawing->rgba + 4 * ((size_t)(30 * drawing->height / HEIGHT) * (size_t)drawing->width +
+                                  (size_t)(40 * drawing->width / WIDTH));
+    g_assert_cmpint(within[0], ==, 0xaa);
+}
+
 int main(int argc, char **argv)
 {
     g_setenv("G_TEST_SRCDIR", g_getenv("FLUIDY_FIXTURES"), true);
@@ -233,6 +333,10 @@ int main(int argc, char **argv)
     TEST(another_style_paints_its_region_alone);
     TEST(drafts_loops_and_holds_are_as_written);
     TEST(two_films_in_two_threads);
+    TEST(drafts_come_at_once_and_leave_frames_alone);
+    TEST(a_config_of_text_reads_no_drawing_anew);
+    TEST(a_frame_can_be_stopped_within);
+    TEST(regions_and_drawings_are_told);
     TEST(mistakes_leave_the_film_as_it_was);
     return g_test_run();
 }

@@ -15,8 +15,8 @@ G_BEGIN_DECLS
  * What a change does not touch is kept: after another "tint" or "paper" frames are only composed
  * again, after another "style" of a region that region alone is painted again, and after a change
  * of anything about paint the drawing is not read again. Painted pictures stay in memory, up to
- * 1 GiB or a quarter of the limit ‘memory’, so that a choice that is taken back shows the earlier
- * pictures at once.
+ * 512 MiB, or an eighth of the limit ‘memory’, of frames and of drafts each, so that a choice that
+ * is taken back shows the earlier pictures at once.
  *
  * Threads: one film belongs to one thread at a time; several threads may have a film each. While
  * the process has a single thread, drawings are read and drawn in child processes, which are
@@ -48,6 +48,15 @@ FL_API void fl_film_close(FlFilm *film); /**< NULL is fine */
 FL_API bool fl_film_set(FlFilm *film, const char *region, const char *name, const char *value,
                         GError **error);
 
+/**
+ * Takes the config of a text, whose path gives the folder of its paths and a name for messages; no
+ * file is read. What does not differ from the config before is kept.
+ *
+ * text: as in fluidy-svg.conf(5), copied; NULL: the file `path`, or none. Returns: false with
+ * FL_ERROR_USAGE; the config before then stays.
+ */
+FL_API bool fl_film_set_config(FlFilm *film, const char *path, const char *text, GError **error);
+
 /** Calls to the program. Zero it and set `size`, so that versions understand each other. */
 typedef struct FlFilmCalls {
     size_t size; /**< sizeof(FlFilmCalls); required */
@@ -58,6 +67,11 @@ typedef struct FlFilmCalls {
     /** Called with one line about what was done. */
     void (*note)(const char *message, void *data);
     void *data; /**< handed to each of them */
+    /** Called now and then, from any thread, also within a frame; true stops what is being done
+     * with FL_ERROR_INTERRUPTED. */
+    bool (*stopped)(void *data);
+    /** Called with the path of each file and folder that is read, but for the drawings' own. */
+    void (*reads)(const char *path, void *data);
 } FlFilmCalls;
 
 /** Sets the calls of a film; they hold from the next call on. NULL: no calls. */
@@ -65,10 +79,13 @@ FL_API void fl_film_set_calls(FlFilm *film, const FlFilmCalls *calls);
 
 /** Facts about a drawing. Belongs to the film; later versions may add fields at the end. */
 typedef struct FlFilmInfo {
-    int n_frames;  /**< of the drawing, without those that are left out */
-    int width;     /**< of the frames, px */
-    int height;    /**< of the frames, px */
-    int n_regions; /**< that are painted */
+    int n_frames;     /**< of the drawing, without those that are left out */
+    int width;        /**< of the frames, px */
+    int height;       /**< of the frames, px */
+    int n_regions;    /**< that are painted */
+    const char *name; /**< common to the names of the files */
+    double fps;       /**< frames per second at which it is played */
+    bool transparent; /**< frames have no background */
 } FlFilmInfo;
 
 /**
@@ -96,6 +113,46 @@ typedef struct FlFilmFrame {
  * after which the film can still be used.
  */
 FL_API const FlFilmFrame *fl_film_frame(FlFilm *film, int frame, GError **error);
+
+/**
+ * Makes drafts small: px that no side of theirs is longer than; 0: as long as in the frames.
+ * Without effect on the frames.
+ */
+FL_API void fl_film_set_draft_side(FlFilm *film, int most_side);
+
+/** The number of a frame of the last info, as in the name of its file; frame: 0 to n_frames - 1. */
+FL_API int fl_film_number(const FlFilm *film, int frame);
+
+/** As fl_film_info(), of drafts: they have their own size, and the drawing is read for them. */
+FL_API const FlFilmInfo *fl_film_draft_info(FlFilm *film, GError **error);
+
+/**
+ * Drafts a frame, to be seen at once: with detail "draft", and as if the film began with this
+ * frame, unless the one before was drafted last. So it depends on the order of the calls, and later
+ * frames follow it. Paint of a loop, whose beginning follows from its end, is painted from there.
+ */
+FL_API const FlFilmFrame *fl_film_draft(FlFilm *film, int frame, GError **error);
+
+/** The drawing in a frame, without paint, in the size in which drafts are drawn. Returns: valid
+ * until the next call. */
+FL_API const FlFilmFrame *fl_film_drawing(FlFilm *film, int frame, GError **error);
+
+/** The same with each region in a colour of its own. */
+FL_API const FlFilmFrame *fl_film_map(FlFilm *film, int frame, GError **error);
+
+/** A region of a film. Belongs to the film; later versions may add fields at the end. */
+typedef struct FlFilmRegion {
+    const char *name;  /**< unique; the name in settings */
+    const char *layer; /**< path of the layers that contain it, with / between; "": none */
+    const char *paint; /**< "#rrggbb", "gradient" or "image": of most of its area */
+    const char *style; /**< that paints it; NULL: it is drawn as it is, or left out */
+    bool left_out;     /**< it is neither painted nor drawn */
+    uint8_t colour[3]; /**< in fl_film_map() */
+} FlFilmRegion;
+
+/** The regions of the drawing, *n of them. Returns: valid until the next call; NULL with an error
+ * of FL_ERROR. */
+FL_API const FlFilmRegion *fl_film_regions(FlFilm *film, int *n, GError **error);
 
 /** Counts of the work that a film has done so far. Belongs to the film; later versions may add
  * fields at the end. */

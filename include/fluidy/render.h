@@ -142,7 +142,9 @@ typedef struct FlRenderOptions {
     FlSandboxing sandbox; /**< confines the processes that read drawings */
 
     /* Painting. */
-    const char *config;        /**< a file as in fluidy-svg.conf(5); NULL: no config */
+    const char *config;      /**< a file as in fluidy-svg.conf(5); NULL: no config */
+    const char *config_text; /**< text in place of that file's, which need not exist; its paths are
+                                relative to the file's folder; NULL: the file's */
     const FlSetting *settings; /**< override the config's; of several, the last wins */
     size_t n_settings;         /**< in `settings` */
     const char *only_region;   /**< name, or several with commas between: paint these regions alone,
@@ -180,6 +182,7 @@ typedef struct FlRenderOptions {
     int width;           /**< px; 0: from the height, by the drawing's aspect; both 0: scale */
     int height;          /**< likewise */
     double scale;        /**< px of output per px of the drawing; 0: 1 */
+    int most_side;       /**< px of the longer side: a larger picture is made as small; 0: any */
     double dpi;          /**< px per inch, for drawings sized in mm, cm, in, pt; 0: 96 */
     double gap;          /**< px of paper around a region that hides others, 0..32 */
     FlBlendSpace blend;  /**< in which layers are blended */

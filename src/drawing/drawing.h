@@ -26,6 +26,7 @@ typedef struct FlDrawingOptions {
     bool registered;      // move frames that begin at 0,0 back, see drawing/register_frames.h
     int width, height;    // of the picture, px; 0: the drawing's; both: fitted and padded
     double scale;         // px per px of the drawing; 0: 1; not together with width or height
+    int most_side;        // px that no side is longer than; 0: any
     FlStrokes strokes;
     FlRegionKey key;
     /** Tells now and then, from the calling thread, how many frames were read; false interrupts.

@@ -201,6 +201,7 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
                                .width = options->width,
                                .height = options->height,
                                .scale = options->scale,
+                               .most_side = options->most_side,
                                .strokes = options->stroke,
                                .key = options->key,
                                .reading = options->progress ? tell_reading : NULL,

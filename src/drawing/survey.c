@@ -119,6 +119,8 @@ static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, GError **error
     if (o->width > 0 || o->height > 0)
         survey->scale = MIN(o->width > 0 ? o->width / width : INFINITY,
                             o->height > 0 ? o->height / height : INFINITY);
+    if (o->most_side > 0)
+        survey->scale = MIN(survey->scale, o->most_side / MAX(width, height));
     const double w = MAX(1, round(width * survey->scale)),
                  h = MAX(1, round(height * survey->scale));
     if (!(w <= FL_SURVEY_MOST_SIDE && h <= FL_SURVEY_MOST_SIDE)) {

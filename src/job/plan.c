@@ -18,13 +18,14 @@ static bool is_of_paint(const FlOption *option)
     return g_str_equal(option->name, "seed") || g_str_equal(option->name, "loop");
 }
 
-/* The config's rules make regions; it is known by its text, of which each reading has its own. */
-static FlDigest digest_of_reading(const FlRenderOptions *options)
+/* Of the options and of the config's rules, which make regions. */
+static FlDigest digest_of_reading(const FlRenderOptions *options, const FlConfig *config)
 {
     FlDigest digest = {0};
     for (const char *const *input = options->inputs; *input; input++)
         fl_digest_add_text(&digest, *input);
-    fl_digest_add(&digest, &options->config, sizeof options->config);
+    fl_config_add_rules(config, &digest);
+    fl_digest_add(&digest, &options->most_side, sizeof options->most_side);
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *option = fl_option_at(i);
         if (option->scope != FL_SCOPE_RENDER || is_of_paint(option) ||
@@ -42,7 +43,7 @@ static bool open_drawing(FlPlan *plan, const FlPlan *before, GError **error)
     if (!fl_config_region_settings(plan->config, -1, "", &plan->options, &general, error))
         return false;
     plan->hold = general.hold;
-    plan->reading = digest_of_reading(&plan->options);
+    plan->reading = digest_of_reading(&plan->options, plan->config);
     const bool same = before && fl_digest_is_same(plan->reading, before->reading);
     plan->drawing =
         same ? before->drawing : fl_drawing_from_options(&plan->options, plan->config, error);
@@ -150,7 +151,8 @@ static void choose_written(FlPlan *plan, const FlRenderOptions *given)
 static bool begin(FlPlan *plan, const FlPlan *before, const FlRenderOptions *options, size_t memory,
                   GError **error)
 {
-    const bool same_config = before && before->options.config == options->config;
+    const bool same_config = before && before->options.config == options->config &&
+                             before->options.config_text == options->config_text;
     plan->options = *options;
     plan->start = g_get_monotonic_time();
     plan->any_order = before || memory > 0;

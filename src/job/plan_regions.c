@@ -64,7 +64,8 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
     FlRegionPlan *chosen = &plan->painted[plan->n_painted];
     FlRegionSettings *settings = &chosen->settings;
     const bool left_out = is_left_out(plan, r->name);
-    if (!fl_config_region_settings(plan->config, r->rule, r->name, &plan->options, settings, error))
+    const int rule = fl_config_rule(plan->config, r->rule, r->name);
+    if (!fl_config_region_settings(plan->config, rule, r->name, &plan->options, settings, error))
         return false;
     const bool painted = r->paintable && settings->passthrough != FL_PASSTHROUGH_YES;
     plan->half &= !painted || settings->params.half_size;

@@ -10,6 +10,7 @@
 #define BYTES_OF_WINDOW 50.0            // of a pixel, measured: with rotations
 #define BYTES_OF_REST 9.0               // while it is loaded
 #define WINDOW_BYTES (1024.0 * 1048576) // of one style
+#define UNUSED_BYTES (384.0 * 1048576)  // of styles that the plan no longer uses
 
 struct FlStyleCache {
     const FlRenderOptions *options;
@@ -42,9 +43,33 @@ void fl_style_cache_free(FlStyleCache *cache)
     g_free(cache);
 }
 
+/* Parameters of the search and of what is shown, which recordings are read without. */
+static bool is_of_search(const char *name)
+{
+    static const char *const names[] = {"patchmatch-iterations",
+                                        "opt-iterations",
+                                        "next-iterations",
+                                        "first-rounds",
+                                        "finest-rounds",
+                                        "finest-sweeps",
+                                        "temp-lower",
+                                        "temp-upper",
+                                        "carry",
+                                        "uni-radius",
+                                        "settled",
+                                        "vote-sharpness",
+                                        "boil",
+                                        "rest",
+                                        "motion-blur",
+                                        NULL};
+    return g_str_has_prefix(name, "w-") || g_strv_contains(names, name);
+}
+
 static bool same_params(const FlParams *a, const FlParams *b)
 {
     for (int i = 0; i < fl_param_count(); i++) {
+        if (is_of_search(fl_param_info(i)->name))
+            continue;
         g_autofree char *x = fl_params_get(a, fl_param_info(i)->name);
         g_autofree char *y = fl_params_get(b, fl_param_info(i)->name);
         if (!g_str_equal(x, y))
@@ -110,17 +135,42 @@ const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSet
     g_autofree char *path = fl_style_find(settings->style, error);
     if (!path)
         return NULL;
-    for (guint i = 0; i < cache->instances->len; i++) {
-        const FlStyleInstance *instance = cache->instances->pdata[i];
-        if (g_str_equal(instance->path, path) && instance->reverse == settings->reverse &&
-            (fl_field_px(instance->exemplar) == 2) == enlarges(cache, settings, path) &&
-            same_params(&instance->params, &settings->params))
-            return instance;
+    FlStyleInstance *instance = NULL;
+    for (guint i = 0; i < cache->instances->len && !instance; i++) {
+        const FlStyleInstance *known = cache->instances->pdata[i];
+        if (g_str_equal(known->path, path) && known->reverse == settings->reverse &&
+            (fl_field_px(known->exemplar) == 2) == enlarges(cache, settings, path) &&
+            same_params(&known->params, &settings->params))
+            instance = g_ptr_array_steal_index(cache->instances, i);
     }
-    FlStyleInstance *instance = load(cache, path, settings, texture_px, error);
+    if (!instance)
+        instance = load(cache, path, settings, texture_px, error);
     if (instance)
         g_ptr_array_add(cache->instances, instance);
     return instance;
+}
+
+static double bytes_of(const FlStyleInstance *instance)
+{
+    const FlExemplarLevel *full = &instance->exemplar->level[0];
+    const double bytes =
+        (double)full->width * full->height *
+        (BYTES_OF_WINDOW * full->window + BYTES_OF_REST * (full->n_frames - full->window));
+    const FlEnlargement *enlargement = instance->exemplar->enlargement;
+    return bytes + (enlargement ? fl_enlargement_bytes(enlargement) : 0);
+}
+
+void fl_style_cache_trim(FlStyleCache *cache, GPtrArray *used)
+{
+    double bytes = 0;
+    for (guint i = cache->instances->len; i-- > 0;) {
+        const FlStyleInstance *instance = cache->instances->pdata[i];
+        if (g_ptr_array_find(used, instance, NULL))
+            continue;
+        bytes += bytes_of(instance);
+        if (bytes > UNUSED_BYTES)
+            g_ptr_array_remove_index(cache->instances, i);
+    }
 }
 
 bool fl_style_cache_learn_patches(FlStyleCache *cache, const FlStyleInstance *style, GError **error)
@@ -135,14 +185,8 @@ bool fl_style_cache_learn_patches(FlStyleCache *cache, const FlStyleInstance *st
 double fl_style_cache_bytes(const FlStyleCache *cache)
 {
     double bytes = 0;
-    for (guint i = 0; i < cache->instances->len; i++) {
-        const FlStyleInstance *instance = cache->instances->pdata[i];
-        const FlExemplarLevel *full = &instance->exemplar->level[0];
-        bytes += (double)full->width * full->height *
-                 (BYTES_OF_WINDOW * full->window + BYTES_OF_REST * (full->n_frames - full->window));
-        if (instance->exemplar->enlargement)
-            bytes += fl_enlargement_bytes(instance->exemplar->enlargement);
-    }
+    for (guint i = 0; i < cache->instances->len; i++)
+        bytes += bytes_of(cache->instances->pdata[i]);
     return bytes;
 }
 

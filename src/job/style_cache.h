@@ -26,6 +26,10 @@ const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSet
 bool fl_style_cache_learn_patches(FlStyleCache *cache, const FlStyleInstance *style,
                                   GError **error);
 
+/** Frees instances that are not among the used ones, those asked for longest ago first, until the
+ * others take no more than 384 MiB. */
+void fl_style_cache_trim(FlStyleCache *cache, GPtrArray *used);
+
 /** An estimate of the bytes of all instances. */
 double fl_style_cache_bytes(const FlStyleCache *cache);
 

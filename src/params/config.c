@@ -256,12 +256,56 @@ FlConfig *fl_config_load(const char *path, const FlRenderOptions *caller, GError
     config->path = g_strdup(path);
     config->defaults.folder = g_strdup(reader.folder);
     const FlFileWait wait = {caller ? caller->stopped : NULL, caller ? caller->data : NULL};
-    const FlKeyReader calls = {read_section, read_entry, &reader, FL_ERROR_USAGE, &wait};
+    const FlKeyReader calls = {read_section,   read_entry, &reader,
+                               FL_ERROR_USAGE, &wait,      caller ? caller->config_text : NULL};
     if (!fl_key_file_read(path, &calls, error))
         return NULL;
     for (int i = 0; i < config->n_rules; i++)
         config->rules[i].by_name = is_by_name(&config->rules[i]);
     return g_steal_pointer(&config);
+}
+
+/* Settings that decide which regions there are, besides how they are painted. */
+static bool is_of_reading(const char *key)
+{
+    return strcmp(key, "passthrough") == 0 || strcmp(key, "merge-with") == 0;
+}
+
+int fl_config_rule(const FlConfig *config, int matched, const char *region)
+{
+    if (matched >= 0 && matched < config->n_rules && !config->rules[matched].by_name)
+        return matched;
+    for (int i = 0; i < config->n_rules; i++)
+        if (config->rules[i].by_name && g_pattern_match_simple(config->rules[i].name, region))
+            return i;
+    return -1;
+}
+
+static void add_list(FlDigest *digest, char **list)
+{
+    g_autofree char *text = list ? g_strjoinv(";", list) : NULL;
+    fl_digest_add_text(digest, text);
+}
+
+void fl_config_add_rules(const FlConfig *config, FlDigest *digest)
+{
+    for (int i = 0; i < config->n_rules; i++) {
+        FlRule *rule = &config->rules[i];
+        const FlOverrides *own = &rule->overrides;
+        for (int k = 0; k < own->n; k++)
+            if (is_of_reading(own->override[k].key)) {
+                fl_digest_add_text(digest, rule->name);
+                fl_digest_add_text(digest, own->override[k].key);
+                fl_digest_add_text(digest, own->override[k].value);
+            }
+        if (rule->by_name)
+            continue;
+        fl_digest_add(digest, &i, sizeof i);
+        fl_digest_add_text(digest, rule->name);
+        fl_digest_add(digest, &rule->match_tolerance, sizeof rule->match_tolerance);
+        for (size_t k = 0; k < G_N_ELEMENTS(match_keys); k++)
+            add_list(digest, *match_list(rule, (int)k));
+    }
 }
 
 static void rule_clear(FlRule *rule)

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_PARAMS_CONFIG_H
 #define FLUIDY_PARAMS_CONFIG_H
 
+#include "base/digest.h"
 #include "params/region_settings.h"
 #include <fluidy/render.h>
 
@@ -43,6 +44,13 @@ typedef struct FlConfig {
  * fl_file_read_pipe()), which names file, line, the mistake and what was expected.
  */
 FlConfig *fl_config_load(const char *path, const FlRenderOptions *caller, GError **error);
+
+/** The rule of a region: the one that matched its leaves, -1 if none did, else the first for its
+ * name; -1: no rule. */
+int fl_config_rule(const FlConfig *config, int matched, const char *region);
+
+/** Adds all that decides which regions the rules make of a drawing. */
+void fl_config_add_rules(const FlConfig *config, FlDigest *digest);
 
 void fl_config_free(FlConfig *config); // NULL is fine
 

@@ -7,9 +7,9 @@
 
 static char *load(const char *path, const FlKeyReader *reader, GError **error)
 {
-    g_autofree char *text = NULL;
-    size_t bytes = 0;
-    if (!fl_file_read_pipe(path, LARGEST_BYTES, reader->wait, &text, &bytes, error))
+    g_autofree char *text = g_strdup(reader->text);
+    size_t bytes = text ? strlen(text) : 0;
+    if (!text && !fl_file_read_pipe(path, LARGEST_BYTES, reader->wait, &text, &bytes, error))
         return NULL;
     if (bytes > LARGEST_BYTES) {
         g_set_error(error, FL_ERROR, FL_ERROR_LIMIT, "%s: the file is larger than 1 MiB", path);

@@ -15,6 +15,7 @@ typedef struct FlKeyReader {
     void *data;
     FlError mistake;        // the error code for syntax errors
     const FlFileWait *wait; // for a pipe; NULL: only a regular file will do
+    const char *text;       // of the file, which is then not read; NULL: it is read
 } FlKeyReader;
 
 /**

@@ -1,6 +1,7 @@
 /* The film object: options that change, and the frames that follow from them. */
 #include <fluidy/film.h>
 
+#include "base/alloc.h"
 #include "base/limits.h"
 #include "base/schedule.h"
 #include "base/suggest.h"
@@ -8,20 +9,29 @@
 #include "render/frames.h"
 #include <string.h>
 
+/* The frames of a film by its options, or drafts of them. */
+typedef struct Take {
+    FlRenderOptions asked; // the options without those of files
+    GArray *settings;      // FlSetting, of those options
+    FlFrames frames;
+    bool open;     // frames follow the options as they were when they changed last
+    bool changed;  // since then
+    int n_painted; // before the take was opened last
+} Take;
+
 struct FlFilm {
     char **inputs;
     FlRenderOptions options; // as they were set; settings are in `settings`
-    FlRenderOptions asked;   // of the frames: the options without those of files
     GPtrArray *strings;      // of the options, kept until the film is closed
     GArray *settings;        // of FlSetting
-    FlFrames frames;
-    bool open;    // frames follow the options as they were when they changed last
-    bool changed; // since then
+    int most_side;           // of drafts, px
+    Take full, draft;
     FlComposite composite;
+    uint8_t *drawing; // the last picture of fl_film_drawing() or fl_film_map()
+    GArray *regions;  // FlFilmRegion, of the last fl_film_regions()
     FlFilmInfo info;
     FlFilmFrame frame;
     FlFilmStats stats;
-    int n_painted; // before the film was opened last
 };
 
 FlFilm *fl_film_open(const char *const *inputs)
@@ -30,28 +40,36 @@ FlFilm *fl_film_open(const char *const *inputs)
     film->inputs = g_strdupv((char **)inputs);
     film->strings = g_ptr_array_new_with_free_func(g_free);
     film->settings = g_array_new(FALSE, FALSE, sizeof(FlSetting));
+    film->full.settings = g_array_new(FALSE, FALSE, sizeof(FlSetting));
+    film->draft.settings = g_array_new(FALSE, FALSE, sizeof(FlSetting));
+    film->regions = g_array_new(FALSE, FALSE, sizeof(FlFilmRegion));
     return film;
 }
 
 /* Frees the drawing and all data derived from the drawing; the next frame reads it again. */
-static void forget(FlFilm *film)
+static void forget(Take *take)
 {
-    fl_composite_clear(&film->composite);
-    if (film->open)
-        film->n_painted += fl_painters_painted(&film->frames.painters);
-    if (film->open)
-        fl_frames_clear(&film->frames);
-    film->open = false;
+    if (take->open)
+        take->n_painted += fl_painters_painted(&take->frames.painters);
+    if (take->open)
+        fl_frames_clear(&take->frames);
+    take->open = false;
 }
 
 void fl_film_close(FlFilm *film)
 {
     if (!film)
         return;
-    forget(film);
+    fl_composite_clear(&film->composite);
+    forget(&film->full);
+    forget(&film->draft);
     g_strfreev(film->inputs);
     g_ptr_array_unref(film->strings);
     g_array_unref(film->settings);
+    g_array_unref(film->full.settings);
+    g_array_unref(film->draft.settings);
+    g_array_unref(film->regions);
+    g_free(film->drawing);
     g_free(film);
 }
 
@@ -117,6 +135,11 @@ static bool set_of_regions(FlFilm *film, const FlSetting *setting, GError **erro
     return true;
 }
 
+static void mark_changed(FlFilm *film)
+{
+    film->full.changed = film->draft.changed = true;
+}
+
 bool fl_film_set(FlFilm *film, const char *region, const char *name, const char *value,
                  GError **error)
 {
@@ -126,8 +149,21 @@ bool fl_film_set(FlFilm *film, const char *region, const char *name, const char 
         return no_such_option(name, error);
     const bool set =
         option ? set_of_film(film, option, value, error) : set_of_regions(film, &setting, error);
-    film->changed = film->changed || set;
+    if (set)
+        mark_changed(film);
     return set;
+}
+
+bool fl_film_set_config(FlFilm *film, const char *path, const char *text, GError **error)
+{
+    const FlRenderOptions given = {.config_text = text};
+    g_autoptr(FlConfig) config = text ? fl_config_load(path, &given, error) : NULL;
+    if (text && !config)
+        return false;
+    film->options.config = keep(film, path);
+    film->options.config_text = keep(film, text);
+    mark_changed(film);
+    return true;
 }
 
 void fl_film_set_calls(FlFilm *film, const FlFilmCalls *calls)
@@ -138,8 +174,10 @@ void fl_film_set_calls(FlFilm *film, const FlFilmCalls *calls)
     film->options.progress = known.progress;
     film->options.warning = known.warning;
     film->options.note = known.note;
+    film->options.stopped = known.stopped;
+    film->options.reads = known.reads;
     film->options.data = known.data;
-    film->changed = true;
+    mark_changed(film);
 }
 
 static FlRenderOptions options_of(const FlFilm *film)
@@ -163,91 +201,217 @@ static FlRenderOptions options_of_frames(const FlFilm *film)
     return options;
 }
 
+/* Settings for every region override those of the config; of drafts no region has its own. */
+static void ask(FlFilm *film, Take *take)
+{
+    static const FlSetting detail = {NULL, "detail", "draft"};
+    const bool drafts = take == &film->draft;
+    take->asked = options_of_frames(film);
+    g_array_set_size(take->settings, 0);
+    for (guint k = 0; k < film->settings->len; k++) {
+        const FlSetting *setting = &g_array_index(film->settings, FlSetting, k);
+        if (!drafts || strcmp(setting->name, detail.name) != 0)
+            g_array_append_val(take->settings, *setting);
+    }
+    if (drafts)
+        g_array_append_val(take->settings, detail);
+    take->asked.settings = (const FlSetting *)(const void *)take->settings->data;
+    take->asked.n_settings = take->settings->len;
+    take->asked.most_side = drafts ? film->most_side : 0;
+}
+
 /* ---- frames ---------------------------------------------------------------------------------- */
 
-/* A film that is open stays so if its new options are wrong. */
-static bool follow_options(FlFilm *film, GError **error)
+/* A take that is open stays so if its new options are wrong. */
+static bool follow_options(FlFilm *film, Take *take, GError **error)
 {
-    const size_t memory = (size_t)MIN(fl_limit(FL_LIMIT_MEMORY) / 4, 1024) << 20;
-    const FlRenderOptions before = film->asked;
-    const FlDrawing *read = film->open ? film->frames.plan->drawing : NULL;
-    film->asked = options_of_frames(film);
+    const size_t memory = (size_t)MIN(fl_limit(FL_LIMIT_MEMORY) / 8, 512) << 20;
+    const FlRenderOptions before = take->asked;
+    const FlDrawing *read = take->open ? take->frames.plan->drawing : NULL;
+    ask(film, take);
     FlPlan *plan =
-        fl_plan_follow(film->open ? film->frames.plan : NULL, &film->asked, memory, error);
+        fl_plan_follow(take->open ? take->frames.plan : NULL, &take->asked, memory, error);
     if (!plan) {
-        film->asked = before;
+        take->asked = before;
         return false;
     }
-    if (film->open)
-        fl_frames_follow(&film->frames, plan);
+    if (take->open)
+        fl_frames_follow(&take->frames, plan);
     else
-        fl_frames_init(&film->frames, plan);
-    film->open = true;
+        fl_frames_init(&take->frames, plan);
+    take->open = true;
     film->stats.n_read += plan->drawing != read;
-    if (fl_frames_check(&film->frames, error) && fl_frames_prepare(&film->frames, error))
+    if (fl_frames_check(&take->frames, error) && fl_frames_prepare(&take->frames, error))
         return true;
-    forget(film);
+    forget(take);
     return false;
 }
 
-static bool settle(FlFilm *film, GError **error)
+static bool settle(FlFilm *film, Take *take, GError **error)
 {
-    if (film->open && !film->changed)
+    if (take->open && !take->changed)
         return true;
-    if (!follow_options(film, error))
+    if (!follow_options(film, take, error))
         return false;
-    const FlPlan *plan = film->frames.plan;
-    film->info =
-        (FlFilmInfo){fl_drawing_frames(plan->drawing), plan->width, plan->height, plan->n_painted};
-    film->changed = false;
+    const FlPlan *plan = take->frames.plan;
+    const double fps = plan->options.fps;
+    film->info = (FlFilmInfo){.n_frames = fl_drawing_frames(plan->drawing),
+                              .width = plan->width,
+                              .height = plan->height,
+                              .n_regions = plan->n_painted,
+                              .name = fl_drawing_name(plan->drawing),
+                              .fps = fps > 0 ? fps : 24,
+                              .transparent = take->frames.background.none};
+    take->changed = false;
     return true;
 }
 
-static bool make_frame(FlFilm *film, int frame, GError **error)
-{
-    FlFrames *frames = &film->frames;
-    double paint_s;
-    fl_composite_clear(&film->composite);
-    if (frame < 0 || frame >= film->info.n_frames) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "frame %d: expected 0 to %d", frame,
-                    film->info.n_frames - 1);
-        return false;
-    }
-    if (!fl_frames_seek(frames, frame, error) ||
-        !fl_frames_make(frames, frame, -1, &film->composite, &paint_s, error))
-        return false;
-    film->stats.n_composed++;
-    film->frame = (FlFilmFrame){frame, fl_drawing_number(frames->plan->drawing, frame),
-                                film->info.width, film->info.height, film->composite.rgba};
-    return true;
-}
+/* Work on a frame of a take, with the threads of the film's options. */
+typedef bool (*Work)(FlFilm *film, Take *take, int frame, GError **error);
 
-/* Runs with the threads of the film's options. */
-static bool with_threads(FlFilm *film, int frame, bool (*work)(FlFilm *, int, GError **),
-                         GError **error)
+static bool work_on(FlFilm *film, Take *take, int frame, Work work, GError **error)
 {
     const int threads = fl_schedule_threads();
     if (film->options.threads > 0)
         (void)fl_schedule_set_threads(film->options.threads);
-    const bool done = settle(film, error) && (!work || work(film, frame, error));
+    bool done = settle(film, take, error);
+    const int n = done ? fl_drawing_frames(take->frames.plan->drawing) : 0;
+    if (done && (frame < 0 || frame >= n)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "frame %d: expected 0 to %d", frame, n - 1);
+        done = false;
+    }
+    done = done && (!work || work(film, take, frame, error));
     (void)fl_schedule_set_threads(threads);
     return done;
 }
 
+static const FlFilmFrame *give(FlFilm *film, const FlPlan *plan, int frame, int width, int height,
+                               const uint8_t *rgba)
+{
+    film->frame =
+        (FlFilmFrame){frame, fl_drawing_number(plan->drawing, frame), width, height, rgba};
+    return &film->frame;
+}
+
+static bool make_frame(FlFilm *film, Take *take, int frame, GError **error)
+{
+    FlFrames *frames = &take->frames;
+    double paint_s;
+    fl_composite_clear(&film->composite);
+    if (!(take == &film->draft ? fl_frames_start_at : fl_frames_seek)(frames, frame, error) ||
+        !fl_frames_make(frames, frame, -1, &film->composite, &paint_s, error))
+        return false;
+    film->stats.n_composed++;
+    (void)give(film, frames->plan, frame, frames->plan->width, frames->plan->height,
+               film->composite.rgba);
+    return true;
+}
+
 const FlFilmInfo *fl_film_info(FlFilm *film, GError **error)
 {
-    return with_threads(film, 0, NULL, error) ? &film->info : NULL;
+    return work_on(film, &film->full, 0, NULL, error) ? &film->info : NULL;
 }
 
 const FlFilmFrame *fl_film_frame(FlFilm *film, int frame, GError **error)
 {
-    return with_threads(film, frame, make_frame, error) ? &film->frame : NULL;
+    return work_on(film, &film->full, frame, make_frame, error) ? &film->frame : NULL;
+}
+
+int fl_film_number(const FlFilm *film, int frame)
+{
+    const Take *take = film->draft.open ? &film->draft : &film->full;
+    return fl_drawing_number(take->frames.plan->drawing, frame);
+}
+
+/* ---- drafts ---------------------------------------------------------------------------------- */
+
+void fl_film_set_draft_side(FlFilm *film, int most_side)
+{
+    film->draft.changed |= film->most_side != most_side;
+    film->most_side = most_side;
+}
+
+const FlFilmInfo *fl_film_draft_info(FlFilm *film, GError **error)
+{
+    return work_on(film, &film->draft, 0, NULL, error) ? &film->info : NULL;
+}
+
+const FlFilmFrame *fl_film_draft(FlFilm *film, int frame, GError **error)
+{
+    return work_on(film, &film->draft, frame, make_frame, error) ? &film->frame : NULL;
+}
+
+/* The drawing in a frame into film->drawing, in its colours or in those of the map. */
+static bool draw_shapes(FlFilm *film, Take *take, int frame, bool map, GError **error)
+{
+    const FlDrawing *drawing = take->frames.plan->drawing;
+    const int width = fl_drawing_width(drawing), height = fl_drawing_height(drawing);
+    g_autoptr(FlDrawList) draws =
+        fl_drawing_draw_list(drawing, fl_drawing_shown(drawing, frame), error);
+    g_autofree uint8_t *rgba =
+        draws ? fl_alloc((size_t)width * (size_t)height, 4, "a drawing", error) : NULL;
+    if (!rgba)
+        return false;
+    fl_draw_list_flat(draws, width, height, rgba);
+    if (map)
+        fl_draw_list_map(drawing, draws, rgba);
+    g_free(film->drawing);
+    film->drawing = g_steal_pointer(&rgba);
+    (void)give(film, take->frames.plan, frame, width, height, film->drawing);
+    return true;
+}
+
+static bool draw_plain(FlFilm *film, Take *take, int frame, GError **error)
+{
+    return draw_shapes(film, take, frame, false, error);
+}
+
+static bool draw_map(FlFilm *film, Take *take, int frame, GError **error)
+{
+    return draw_shapes(film, take, frame, true, error);
+}
+
+const FlFilmFrame *fl_film_drawing(FlFilm *film, int frame, GError **error)
+{
+    return work_on(film, &film->draft, frame, draw_plain, error) ? &film->frame : NULL;
+}
+
+const FlFilmFrame *fl_film_map(FlFilm *film, int frame, GError **error)
+{
+    return work_on(film, &film->draft, frame, draw_map, error) ? &film->frame : NULL;
+}
+
+const FlFilmRegion *fl_film_regions(FlFilm *film, int *n, GError **error)
+{
+    if (!work_on(film, &film->draft, 0, NULL, error))
+        return NULL;
+    const FlPlan *plan = film->draft.frames.plan;
+    g_array_set_size(film->regions, 0);
+    *n = fl_drawing_regions(plan->drawing);
+    for (int r = 0; r < *n; r++) {
+        const FlRegion *region = fl_drawing_region(plan->drawing, r);
+        const int p = plan->painted_of[r];
+        FlFilmRegion told = {.name = region->name,
+                             .layer = region->label,
+                             .paint = region->paint,
+                             .style = p >= 0 ? plan->painted[p].settings.style : NULL,
+                             .left_out = p == FL_LEFT_OUT};
+        fl_region_colour(plan->drawing, r, told.colour);
+        g_array_append_val(film->regions, told);
+    }
+    return (const FlFilmRegion *)(const void *)film->regions->data;
+}
+
+/* ---- the whole ------------------------------------------------------------------------------- */
+
+static int painted_in(const Take *take)
+{
+    return take->n_painted + (take->open ? fl_painters_painted(&take->frames.painters) : 0);
 }
 
 const FlFilmStats *fl_film_stats(FlFilm *film)
 {
-    film->stats.n_painted =
-        film->n_painted + (film->open ? fl_painters_painted(&film->frames.painters) : 0);
+    film->stats.n_painted = painted_in(&film->full) + painted_in(&film->draft);
     return &film->stats;
 }
 

@@ -12,6 +12,8 @@
 #include "render/painter_guides.h"
 #include "worker/messages.h"
 
+#define WET_IN_DRAFTS 3 // frames from which wet paper is known
+
 static double seconds_since(gint64 start)
 {
     return (double)(g_get_monotonic_time() - start) * 1e-6;
@@ -104,6 +106,11 @@ static bool paint_one(void *data, int p, int frame, GError **error)
     const FlPlan *plan = frames->plan;
     FlPainter *painter = frames->painters.painter[p];
     const bool taken_apart = plan->options.dump || exports(plan);
+    if (plan->any_order && plan->options.stopped && plan->options.stopped(plan->options.data)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted within frame %d; %s",
+                    fl_drawing_number(plan->drawing, frame), frames->advice);
+        return false;
+    }
     painter->wants_guides = taken_apart || frames->report;
     painter->wants_view = taken_apart || fl_report_wants_view(frames->report, frame);
     const bool painted = fl_painter_frame(painter, frame, error) &&
@@ -199,12 +206,14 @@ static bool paint(FlFrames *frames, int shown, GError **error)
     return true;
 }
 
-static bool seek_painters(FlFrames *frames, int shown, GError **error)
+static bool seek_painters(FlFrames *frames, int shown,
+                          int (*seek)(FlPainter *painter, int frame, GError **error),
+                          GError **error)
 {
     const FlPlan *plan = frames->plan;
     int from = shown;
     for (int p = 0; p < frames->painters.n && from > -2; p++)
-        from = MIN(from, fl_painter_seek(frames->painters.painter[p], shown, error));
+        from = MIN(from, seek(frames->painters.painter[p], shown, error));
     bool good = from > -2;
     for (int k = 0; good && from == -1 && k < FL_LOOP_LONGEST; k++)
         good = fl_painters_each(&frames->painters, k, lead_in_one, frames, error);
@@ -252,20 +261,21 @@ static bool make_frame(FlFrames *frames, int frame, int next, FlComposite *compo
     return made;
 }
 
-static bool open_wet(FlFrames *frames, GError **error);
+static bool open_wet(FlFrames *frames, int known, GError **error);
 
 /* Marks on wet paper follow from the frames before, as they are composed; older ones are gone. */
 static bool seek_marks(FlFrames *frames, int shown, GError **error)
 {
     const int first = MAX(shown - FL_WET_FRAMES, 0);
-    if ((frames->marked >= shown || frames->marked + 1 < first) && !open_wet(frames, error))
+    if ((frames->marked >= shown || frames->marked + 1 < first) &&
+        !open_wet(frames, FL_WET_FRAMES, error))
         return false;
     bool good = true;
     for (int f = MAX(frames->marked + 1, first); good && f < shown; f++) {
         g_auto(FlComposite) composite = {0};
         double paint_s;
         good = fl_drawing_shown(frames->plan->drawing, f) != f ||
-               (seek_painters(frames, f, error) &&
+               (seek_painters(frames, f, fl_painter_seek, error) &&
                 make_frame(frames, f, -1, &composite, &paint_s, error));
     }
     return good;
@@ -335,14 +345,26 @@ static bool wet_motion(void *data, int region, int before, int now, FlRect part,
     return true;
 }
 
-static bool open_wet(FlFrames *frames, GError **error)
+static bool open_wet(FlFrames *frames, int known, GError **error)
 {
     const FlPlan *plan = frames->plan;
     frames->marked = -1;
     g_clear_pointer(&frames->wet, fl_wet_free);
     return (frames->painters.motion[1] || frames->motion ||
             (frames->motion = fl_motion_source_new(plan->drawing, plan->masks, true, error))) &&
-           (frames->wet = fl_wet_new(plan, frames->background.paper, wet_motion, frames, error));
+           (frames->wet =
+                fl_wet_new(plan, frames->background.paper, known, wet_motion, frames, error));
+}
+
+/* Frees styles that an earlier plan has used. */
+static void drop_styles(const FlPlan *plan)
+{
+    g_autoptr(GPtrArray) used = g_ptr_array_new();
+    for (int p = 0; p < plan->n_painted; p++) {
+        g_ptr_array_add(used, (gpointer)plan->painted[p].style);
+        g_ptr_array_add(used, (gpointer)plan->painted[p].tile);
+    }
+    fl_style_cache_trim(plan->styles, used);
 }
 
 bool fl_frames_prepare(FlFrames *frames, GError **error)
@@ -350,18 +372,28 @@ bool fl_frames_prepare(FlFrames *frames, GError **error)
     FlPainters *painters = &frames->painters;
     const bool wet = fl_wet_wanted(frames->plan);
     fl_painters_recall(painters, frames->plan);
+    if (frames->old_plan)
+        drop_styles(frames->plan);
     g_clear_pointer(&frames->old_plan, fl_plan_free);
     return (frames->plan->rasterised || !(wet || fl_painters_need_masks(painters)) ||
             fl_plan_rasterise(frames->plan, error)) &&
            fl_frames_tell(frames, "guides", 0, 0, error) && fl_painters_init(painters, error) &&
-           (!wet || open_wet(frames, error));
+           (!wet || open_wet(frames, FL_WET_FRAMES, error));
 }
 
 bool fl_frames_seek(FlFrames *frames, int frame, GError **error)
 {
     const int shown = fl_drawing_shown(frames->plan->drawing, frame);
     return (!frames->wet || seek_marks(frames, shown, error)) &&
-           seek_painters(frames, shown, error);
+           seek_painters(frames, shown, fl_painter_seek, error);
+}
+
+bool fl_frames_start_at(FlFrames *frames, int frame, GError **error)
+{
+    const int shown = fl_drawing_shown(frames->plan->drawing, frame);
+    const bool wets = frames->wet && frames->marked != shown - 1;
+    return (!wets || open_wet(frames, WET_IN_DRAFTS, error)) &&
+           seek_painters(frames, shown, fl_painter_start_at, error);
 }
 
 bool fl_frames_save(const FlFrames *frames, GPtrArray *states, GError **error)

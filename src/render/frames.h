@@ -51,6 +51,9 @@ bool fl_frames_lead_in(FlFrames *frames, GError **error);
  * plan has a store. */
 bool fl_frames_seek(FlFrames *frames, int frame, GError **error);
 
+/** The same at once, as if the film began with the frame: what is shown differs at first. */
+bool fl_frames_start_at(FlFrames *frames, int frame, GError **error);
+
 /**
  * Paints and composes a frame. Frames come in order; next is the frame that follows, or -1.
  *

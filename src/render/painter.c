@@ -327,6 +327,19 @@ int fl_painter_seek(FlPainter *painter, int frame, GError **error)
     return files ? frame : from < lead_in ? -1 : (from - lead_in) * hold;
 }
 
+int fl_painter_start_at(FlPainter *painter, int frame, GError **error)
+{
+    const int hold = painter->plan->settings.hold, k = frame / hold;
+    if (painter->origin != FL_FROM_ENGINE || painter->plan->loops || painter->next == k + 1 ||
+        painter->next == k)
+        return fl_painter_seek(painter, frame, error);
+    fl_reuse_restart(&painter->reuse, k);
+    if (!restart(painter, error))
+        return -2;
+    painter->next = k;
+    return k * hold;
+}
+
 /* ---- states ---------------------------------------------------------------------------------- */
 
 /* Returns: true if the pictures have engine states. Pictures from files, and regions without

@@ -71,6 +71,10 @@ bool fl_painter_frame(FlPainter *painter, int frame, GError **error);
  */
 int fl_painter_seek(FlPainter *painter, int frame, GError **error);
 
+/** The same, as if the film began with the frame, unless the picture before is at hand. A loop is
+ * painted from its beginning all the same. */
+int fl_painter_start_at(FlPainter *painter, int frame, GError **error);
+
 /** The guides of the last picture, if painter->wants_guides: of all of result.rect. */
 const FlGuides *fl_painter_guides(const FlPainter *painter);
 

@@ -83,6 +83,15 @@ void fl_reuse_begin(FlReuse *reuse, FlRect rect)
 {
     reuse->rect = rect;
     fl_digest_add(&reuse->last, &rect, sizeof rect);
+    reuse->begun = reuse->last;
+}
+
+void fl_reuse_restart(FlReuse *reuse, int k)
+{
+    g_array_set_size(reuse->made, 0);
+    reuse->last = reuse->begun;
+    if (k > 0)
+        fl_digest_add(&reuse->last, &k, sizeof k);
 }
 
 /* ---- pictures ------------------------------------------------------------------------------- */

@@ -21,6 +21,7 @@ typedef struct FlReuse {
     FlFacts *facts;  // of method and film
     FlDigest method; // of the facts that decide the paint besides the shapes
     FlDigest film, slot; // of all facts; of where those of the last render are kept
+    FlDigest begun;      // before the first picture
     FlDigest last;       // of the picture painted or taken last
     GArray *made;        // of FlDigest: the pictures so far, where they follow from the guides
     GArray *known;       // of FlDigest: all pictures of the film; NULL: not known
@@ -43,6 +44,9 @@ void fl_reuse_recall(FlReuse *reuse, const FlPlan *plan, int p);
 
 /** Begins the chain of a region whose pictures are not known and have this place in the frame. */
 void fl_reuse_begin(FlReuse *reuse, FlRect rect);
+
+/** Goes back to picture k, as if the film began with that. */
+void fl_reuse_restart(FlReuse *reuse, int k);
 
 /** True if picture k, counted as they are painted, from 0, can be taken: its digest is known. */
 bool fl_reuse_has(const FlReuse *reuse, int k);

@@ -10,8 +10,8 @@
 
 #define CELL_PX 1.3f // px of a page of FL_WET_PAGE_PX that a cell may have, about
 
-FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], FlWetMotion motion, void *data,
-                  GError **error)
+FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], int known, FlWetMotion motion,
+                  void *data, GError **error)
 {
     const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
     const float page_px = (float)MAX(width, height) / FL_WET_PAGE_PX;
@@ -19,6 +19,7 @@ FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], FlWetMotion motion
     g_autoptr(FlWet) wet = g_new0(FlWet, 1);
     *wet = (FlWet){.plan = plan, .motion = motion, .motion_data = data, .cell = cell, .at = -1};
     memcpy(wet->paper, paper, 3);
+    wet->known = known;
     wet->ground = g_new0(bool, MAX(fl_drawing_regions(plan->drawing), 1));
     for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
         wet->ground[r] = fl_wet_is_ground(plan, r);
@@ -167,8 +168,7 @@ static bool is_new(const FlWet *wet, int frame)
 static bool roll_in(FlWet *wet, int frame, GError **error)
 {
     const int n = fl_drawing_frames(wet->plan->drawing), hold = wet->plan->hold;
-    const int first =
-        wet->plan->options.loop ? frame - FL_WET_FRAMES : MAX(frame - FL_WET_FRAMES, 0);
+    const int first = wet->plan->options.loop ? frame - wet->known : MAX(frame - wet->known, 0);
     int before = -1;
     for (int f = first; f < frame; f++) {
         const int at = ((f % n) + n) % n;

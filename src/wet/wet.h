@@ -10,14 +10,15 @@
 /** Says if any region of the plan marks the paper. */
 bool fl_wet_wanted(const FlPlan *plan);
 
-/** The plan is borrowed, and its masks are rasterised. paper: on which paint is thought to lie. */
-FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], FlWetMotion motion, void *data,
-                  GError **error);
+/** The plan is borrowed, and its masks are rasterised. paper: on which paint is thought to lie.
+ * known: frames before the first one that it is known from, FL_WET_FRAMES or, in drafts, less. */
+FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], int known, FlWetMotion motion,
+                  void *data, GError **error);
 void fl_wet_free(FlWet *wet); // NULL is fine
 
 /**
  * Goes on to a frame: the one after that of the last call, or any as the first one. Before that the
- * paper is known from FL_WET_FRAMES frames of masks, motion and fills.
+ * paper is known from the frames before, of masks, motion and fills.
  */
 bool fl_wet_frame(FlWet *wet, int frame, GError **error);
 

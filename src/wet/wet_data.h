@@ -29,7 +29,8 @@ struct FlWet {
     uint8_t paper[3];
     FlWetMotion motion;
     void *motion_data;
-    int cell; // px of the drawing
+    int known; // frames before the first that is composed
+    int cell;  // px of the drawing
     FlWetSheet sheet;
     int n_markers;
     FlMarker *marker;
