@@ -36,10 +36,6 @@ static inline bool fl_schedule_worth_threads(size_t pixels)
  */
 bool fl_schedule_fits_beside(size_t pixels, size_t frame_pixels);
 
-/** The speed of all threads on one item relative to one thread; below their number, since they wait
- * for each other. */
-double fl_schedule_gain(void);
-
 /** One of several pieces of work. */
 typedef struct FlWorkItem {
     int index;     // passed to the work function
@@ -55,8 +51,7 @@ typedef bool (*FlItemWork)(void *data, int index, int thread, GError **error);
  * Does all items: those that are alone and the most expensive of the others in turn with all
  * threads, outside any team, since inside one, even of one thread, a search would start and end its
  * own threads at every step; then the rest side by side, a thread each, the most expensive first,
- * so that no expensive item is left for the end. The number of items done in turn is the one with
- * the least total time by their costs.
+ * so that no expensive item is left for the end.
  *
  * Reorders the items. Returns: false with the first error; after a failed item of all threads no
  * further item starts.

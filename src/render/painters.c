@@ -294,7 +294,7 @@ static double cost_of(const FlPainter *painter)
 static void note_cost(FlPainter *painter, int step, bool together)
 {
     if (step % painter->plan->settings.hold == 0 && painter->result.stats.n_levels > 0)
-        painter->cost_s = painter->result.seconds * (together ? fl_schedule_gain() : 1);
+        painter->cost_s = painter->result.seconds * (together ? fl_schedule_threads() : 1);
 }
 
 bool fl_painters_each(FlPainters *painters, int step, FlPainterWork work, void *data,
