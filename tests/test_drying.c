@@ -3,33 +3,35 @@
 #include "synth/drying.h"
 #include "synth/synth.h"
 
-enum { SIDE = TARGET_SIDE, PIXELS = SIDE * SIDE };
+enum { SIDE = TARGET_SIDE, PIXELS = SIDE * SIDE, MIDDLE = SIDE / 2, AT = MIDDLE * SIDE + MIDDLE };
 
 #define UNIT 0.4f // px
 
 static const FlRect whole = {0, 0, SIDE, SIDE};
 
-/* A frame that is all paint `depth` px below its contour, whose speed is v; the drawing's is u. */
-static void fill_guides(FlGuides *guides, float depth, float v, float u)
+/* A frame that is all paint: its middle column lies `depth` px below a contour on the right, whose
+ * speed is v; the drawing's is u. `bare` is the share of paper beyond it. */
+static void fill_guides(FlGuides *guides, float depth, float v, float u, uint8_t bare)
 {
     g_assert_true(fl_guides_init(guides, SIDE, SIDE, NULL));
     guides->has_motion = true;
     for (int p = 0; p < PIXELS; p++) {
         guides->mask[p] = 255;
-        guides->distance[p] = guides->depth[p] = depth;
-        guides->contour_speed[p] = v;
+        guides->distance[p] = guides->depth[p] = depth + (float)(MIDDLE - p % SIDE);
+        guides->flow[2 * p] = v, guides->flow[2 * p + 1] = 0;
+        guides->bare[p] = bare;
         guides->motion[2 * p] = (int32_t)(u * FL_MOTION_ONE), guides->motion[2 * p + 1] = 0;
     }
 }
 
 /* The wetness after a number of frames, from `wet` on; below 0: of new paint. */
-static int wet_after(float depth, float v, float u, int wet, int frames, int *tone)
+static int wet_beside(uint8_t bare, float depth, float v, float u, int wet, int frames, int *tone)
 {
     g_auto(FlGuides) guides = {0};
     g_auto(FlCarried) carried = {0};
     uint8_t now[PIXELS], tones[PIXELS];
     const FlDrying drying = {&guides, UNIT, SIDE, 1};
-    fill_guides(&guides, depth, v, u);
+    fill_guides(&guides, depth, v, u, bare);
     g_assert_true(fl_carried_init(&carried, SIDE, SIDE, NULL));
     for (int f = 0; f < frames; f++) {
         for (int p = 0; p < PIXELS; p++) {
@@ -37,9 +39,14 @@ static int wet_after(float depth, float v, float u, int wet, int frames, int *to
             carried.wet[p] = (uint8_t)MAX(wet, 0);
         }
         fl_drying_step(&drying, whole, &carried, now, tones);
-        wet = now[0], *tone = tones[0];
+        wet = now[AT], *tone = tones[AT];
     }
     return wet;
+}
+
+static int wet_after(float depth, float v, float u, int wet, int frames, int *tone)
+{
+    return wet_beside(255, depth, v, u, wet, frames, tone);
 }
 
 static void an_edge_that_advances_gets_wet_and_pale_and_one_that_recedes_dry_and_dark(void)
@@ -54,6 +61,16 @@ static void an_edge_that_advances_gets_wet_and_pale_and_one_that_recedes_dry_and
     g_assert_cmpint(pale, <, 4 * FL_TONE_ONE / 5);
     g_assert_cmpint(dark, >, 6 * FL_TONE_ONE / 5);
     g_assert_cmpint(still, ==, FL_TONE_ONE);
+}
+
+static void an_edge_over_other_paint_is_as_at_rest(void)
+{
+    int lead, trail, still;
+    const int rest = wet_after(0.5f, 0, 0, 40, 5, &still);
+    g_assert_cmpint(wet_beside(0, 0.5f, 3, 0, 40, 5, &lead), ==, rest);
+    g_assert_cmpint(wet_beside(0, 0.5f, -3, 0, 40, 5, &trail), ==, rest);
+    g_assert_cmpint(lead, ==, still);
+    g_assert_cmpint(trail, ==, still);
 }
 
 static void new_paint_is_fresh_and_at_rest_is_dry_in_time(void)
@@ -87,7 +104,7 @@ static void paint_that_dries_goes_on_in_the_recording(void)
     const FlDrying drying = {&guides, UNIT, SIDE, 1};
     const FlMatch deep = {16 * STYLE_W / 2, 16 * STYLE_H / 2};
     const FlMatch rim = {16 * (STYLE_W / 2 + 10), 16 * STYLE_H / 2}; // 2 px below the contour
-    fill_guides(&guides, 20, 0, 0);
+    fill_guides(&guides, 20, 0, 0, 255);
     g_assert_true(fl_carried_init(&carried, SIDE, SIDE, NULL));
     memset(carried.wet, FL_WET, PIXELS);
     carried.nnf.match[0] = deep, carried.nnf.match[1] = rim;
@@ -104,6 +121,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
 #define TEST(name) g_test_add_func("/drying/" #name, name)
     TEST(an_edge_that_advances_gets_wet_and_pale_and_one_that_recedes_dry_and_dark);
+    TEST(an_edge_over_other_paint_is_as_at_rest);
     TEST(new_paint_is_fresh_and_at_rest_is_dry_in_time);
     TEST(what_moves_is_damp_all_through);
     TEST(paint_that_dries_goes_on_in_the_recording);

@@ -23,7 +23,7 @@ static void around_of(const FlDrawList *frames, int n, const FlEdge *limits,
     g_autoptr(FlSurround) surround = fl_surround_new(3, 1, W, H, NULL);
     for (int f = 0; f < n; f++)
         fl_neighbours_note(neighbours, &frames[f], limits);
-    g_assert_true(fl_surround_put(surround, 0, frames, limits, NULL, neighbours, NULL));
+    g_assert_true(fl_surround_put(surround, 0, frames, limits, NULL, NULL, neighbours, NULL));
     g_assert_true(fl_surround_get(surround, 0, 0, (FlRect){0, 0, W, H}, around, NULL));
 }
 
@@ -149,7 +149,8 @@ static bool joins_alike(const FlDrawList frames[2], const FlEdge *limits)
     for (int f = 0; f < 2; f++)
         fl_neighbours_note(neighbours, &frames[f], limits);
     for (int f = 0; f < 2; f++)
-        g_assert_true(fl_surround_put(surround, f, &frames[f], limits, NULL, neighbours, NULL));
+        g_assert_true(
+            fl_surround_put(surround, f, &frames[f], limits, NULL, NULL, neighbours, NULL));
     return fl_surround_joins_as_in(surround, 0, 1, 0);
 }
 

@@ -7,7 +7,8 @@
 
 #define REACH 24 // a shape counts this share of the larger side around its visible part
 
-/** The planes of a region; one of the whole frame follows those of all regions. */
+/** The planes of a region; those of the whole frame follow those of all regions: the shares that
+ * all shapes cover, and both bytes of the lowest figures. */
 typedef enum Kind {
     MASK,     // its coverage
     TOGETHER, // blank: no other shape has its colour
@@ -38,6 +39,12 @@ static int shown_plane(const FlSurround *surround)
     return N_KINDS * surround->n_regions;
 }
 
+/** The plane of byte k of the lowest figures. */
+static int lowest_plane(const FlSurround *surround, int k)
+{
+    return shown_plane(surround) + 1 + k;
+}
+
 static Weights *weights_of(const FlSurround *surround, int region, int frame)
 {
     return &surround->weights[(size_t)region * (size_t)surround->n_frames + (size_t)frame];
@@ -46,7 +53,7 @@ static Weights *weights_of(const FlSurround *surround, int region, int frame)
 FlSurround *fl_surround_new(int n_regions, int n_frames, int width, int height, GError **error)
 {
     FlMaskStore *planes =
-        fl_mask_store_new(N_KINDS * n_regions + 1, n_frames, width, height, error);
+        fl_mask_store_new(N_KINDS * n_regions + 3, n_frames, width, height, error);
     if (!planes)
         return NULL;
     FlSurround *surround = g_new0(FlSurround, 1);
@@ -287,8 +294,53 @@ static bool put_shown(const FlSurround *surround, const Frame *frame, GError **e
     return stored;
 }
 
+/** Stores the lowest figure of each pixel, byte by byte. */
+static bool put_lowest(const FlSurround *surround, const Frame *frame, const int *painted_of,
+                       const bool *ground, GError **error)
+{
+    const FlRect page = {0, 0, surround->width, surround->height};
+    bool stored = true;
+    for (int k = 0; k < 2 && stored; k++) {
+        for (int d = frame->draws->n - 1; d >= 0; d--) {
+            const FlDraw *draw = &frame->draws->draw[d];
+            const int region = draw->region, byte = ((region + 1) >> (8 * k)) & 255;
+            const FlRect box = draw->area.box;
+            if ((painted_of && painted_of[region] < 0) || (ground && ground[region]))
+                continue;
+            for (int y = 0; y < box.height; y++)
+                for (int x = 0; x < box.width; x++)
+                    if (draw->coverage[(size_t)y * (size_t)box.width + (size_t)x] >= 128)
+                        frame->coverage[(size_t)(box.y + y) * (size_t)page.width +
+                                        (size_t)(box.x + x)] = (uint8_t)byte;
+        }
+        stored = fl_mask_store_put(surround->planes, lowest_plane(surround, k), frame->number,
+                                   frame->coverage, error);
+        memset(frame->coverage, 0, fl_rect_pixels(page));
+    }
+    return stored;
+}
+
+bool fl_surround_lowest(const FlSurround *surround, int frame, FlRect part, uint16_t *lowest,
+                        GError **error)
+{
+    const size_t n = fl_rect_pixels(part);
+    g_autofree uint8_t *byte = fl_alloc_unset(n, 1, "regions", error);
+    memset(lowest, 0, n * sizeof *lowest);
+    for (int k = 0; k < 2 && byte; k++) {
+        if (!fl_mask_store_has(surround->planes, lowest_plane(surround, k), frame))
+            continue;
+        if (!fl_mask_store_get(surround->planes, lowest_plane(surround, k), frame, part, byte,
+                               error))
+            return false;
+        for (size_t p = 0; p < n; p++)
+            lowest[p] = (uint16_t)(lowest[p] | byte[p] << (8 * k));
+    }
+    return byte;
+}
+
 bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, const FlEdge *limits,
-                     const int *painted_of, const FlNeighbours *neighbours, GError **error)
+                     const int *painted_of, const bool *ground, const FlNeighbours *neighbours,
+                     GError **error)
 {
     const size_t n = (size_t)surround->width * (size_t)surround->height;
     g_autofree uint8_t *coverage = fl_alloc(n, 1, "masks", error);
@@ -299,6 +351,7 @@ bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, c
         return false;
     const Frame all = {draws, &cover, frame, near, coverage};
     const bool done = put_shown(surround, &all, error) &&
+                      put_lowest(surround, &all, painted_of, ground, error) &&
                       put_regions(surround, &all, limits, painted_of, neighbours, error);
     for (int r = 0; r < draws->n; r++)
         free(near[r]);

@@ -18,10 +18,17 @@ FlMaskStore *fl_surround_masks(const FlSurround *surround);
 /**
  * Notes the regions of a frame and what it shows around them; limits: by region, neighbours: of the
  * whole film; NULL: no region shares any. Only those that are painted, where painted_of is 0 or
- * more; NULL: all whose limit is an edge. Any thread; a frame once.
+ * more; NULL: all whose limit is an edge. ground, by region, is true of those on which the figures
+ * move; NULL: all are figures. Any thread; a frame once.
  */
 bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, const FlEdge *limits,
-                     const int *painted_of, const FlNeighbours *neighbours, GError **error);
+                     const int *painted_of, const bool *ground, const FlNeighbours *neighbours,
+                     GError **error);
+
+/** Reads the lowest painted figure of each pixel of a part of a frame: its region + 1; 0: there is
+ * none. */
+bool fl_surround_lowest(const FlSurround *surround, int frame, FlRect part, uint16_t *lowest,
+                        GError **error);
 
 /** The surroundings of a region, planes of a part of a frame. */
 typedef struct FlSurroundPlanes {

@@ -16,7 +16,6 @@
 #include "base/parallel_error.h"
 #include "guides/blur.h"
 #include "guides/change_map.h"
-#include "guides/contour_speed.h"
 #include "guides/direction.h"
 #include "guides/displacement.h"
 #include "guides/extent.h"
@@ -55,8 +54,6 @@ typedef struct Builder {
     FlExtent *extent;
     FlChangeMap changes; // of the frame that is being finished
     bool previous_moves; // of the frame that was finished last
-    float *speed[2];     // of the contour, of a frame: in that frame, and in the one in hand
-    bool contour_moves;  // true if the first of them is not 0 all over
 } Builder;
 
 static void builder_clear(Builder *b)
@@ -72,8 +69,6 @@ static void builder_clear(Builder *b)
     g_free(b->flow_weight);
     g_free(b->dist_weight);
     g_free(b->mask);
-    g_free(b->speed[0]);
-    g_free(b->speed[1]);
     fl_extent_free(b->extent);
     fl_change_map_clear(&b->changes);
 }
@@ -109,9 +104,6 @@ static bool builder_init(Builder *b, FlGuideSequence *sequence, GError **error)
     if (!(b->mask = fl_alloc(n, 1, "a mask", error)) ||
         !fl_change_map_init(&b->changes, source->width, source->height, error))
         return false;
-    for (int k = 0; k < 2 && sequence->params.contour_px > 0; k++)
-        if (!(b->speed[k] = fl_alloc_scratch(n, sizeof(float), "a contour", error)))
-            return false;
     b->extent = fl_extent_new(source->width, source->height, error);
     return b->extent;
 }
@@ -439,47 +431,6 @@ static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, int32_
                               error);
 }
 
-/** Stores a speed of the contour. */
-static bool put_speed(Builder *b, int frame, const FlOutline *outline, const float *speed,
-                      GError **error)
-{
-    const FlRect rect = fl_contour_rect(outline, b->sequence->params.contour_px);
-    const size_t n = fl_rect_pixels(rect);
-    g_autofree int32_t *fixed = fl_alloc_unset(n, sizeof *fixed, "a contour", error);
-    if (!fixed)
-        return false;
-    for (size_t p = 0; p < n; p++) {
-        const size_t x = (size_t)rect.x + p % (size_t)rect.width;
-        const size_t y = (size_t)rect.y + p / (size_t)rect.width;
-        fixed[p] = (int32_t)lrintf(speed[y * (size_t)outline->frame_width + x] * FL_CONTOUR_ONE);
-    }
-    b->sequence->frames[frame].holder[FL_GUIDE_PLANE_CONTOUR] = frame;
-    return fl_plane_store_put(b->sequence->spill,
-                              fl_guide_plane_block(frame, FL_GUIDE_PLANE_CONTOUR), fixed, n, 1,
-                              error);
-}
-
-/** Makes and stores the speed of the contour; the drawing's motion may be NULL. */
-static bool put_contour(Builder *b, int frame, const FlOutline *outline, const int32_t *motion,
-                        GError **error)
-{
-    FlOutline *before;
-    bool moves = false;
-    if (!b->speed[0])
-        return true;
-    if (!outline_of(b, frame - 1, &before, error))
-        return false;
-    const FlContourStep step = {before, outline, motion, b->contour_moves ? b->speed[0] : NULL,
-                                b->sequence->params.contour_px};
-    if ((before != outline || motion || b->contour_moves) &&
-        !fl_contour_speed(&step, b->speed[1], &moves, error))
-        return false;
-    float *const last = b->speed[0];
-    b->speed[0] = b->speed[1], b->speed[1] = last;
-    b->contour_moves = moves;
-    return !moves || put_speed(b, frame, outline, b->speed[0], error);
-}
-
 /** Stores the flow unrounded, for fl_guide_sequence_flow(). */
 static bool put_unrounded(Builder *b, int frame, const FlOutline *outline, const float *flow,
                           GError **error)
@@ -533,11 +484,9 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     if (!outline_of(b, frame, &outline, error))
         return false;
     // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): set where no error is
-    *record =
-        (FlFrameRecord){outline->box, outline->empty, .holder = {-1, -1, -1, -1, -1, -1, -1, -1}};
+    *record = (FlFrameRecord){outline->box, outline->empty, .holder = {-1, -1, -1, -1, -1, -1, -1}};
     fl_change_map_reset(&b->changes);
     if (outline->box.width == 0) {
-        b->contour_moves = false;
         fl_extent_step(b->extent, &record->box, NULL, NULL, NULL, NULL);
         return true;
     }
@@ -551,8 +500,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     b->previous_moves = flow != NULL;
     if (still) { // equals the frame before
         memcpy(record->holder, record[-1].holder, sizeof record->holder);
-        record->holder[FL_GUIDE_PLANE_MOTION] = record->holder[FL_GUIDE_PLANE_CONTOUR] =
-            record->holder[FL_GUIDE_PLANE_CHANGES] = -1;
+        record->holder[FL_GUIDE_PLANE_MOTION] = record->holder[FL_GUIDE_PLANE_CHANGES] = -1;
     } else if (!put_shape(b, frame, outline, flow, error) ||
                !put_motion(b, frame, outline, flow, error) ||
                !put_unrounded(b, frame, outline, flow, error)) {
@@ -562,7 +510,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     g_clear_pointer(&flow, g_free); // the drawing's motion takes much itself
     g_autofree int32_t *motion = NULL;
     return put_drawing_motion(b, frame, outline, &motion, error) &&
-           put_contour(b, frame, outline, motion, error) && put_changes(b, frame, outline, error);
+           put_changes(b, frame, outline, error);
 }
 
 /** The last frame whose outline the motion of a frame needs. */

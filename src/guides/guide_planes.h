@@ -13,13 +13,10 @@ typedef enum FlGuidePlane {
     FL_GUIDE_PLANE_PLUS,           // FL_EXTENT_ONE a px, as is MINUS
     FL_GUIDE_PLANE_MINUS,
     FL_GUIDE_PLANE_MOTION,    // interleaved, FL_MOTION_ONE a px
-    FL_GUIDE_PLANE_CONTOUR,   // FL_CONTOUR_ONE a px, of fl_contour_rect()
     FL_GUIDE_PLANE_UNROUNDED, // the flow's floats, bit by bit, if the source keeps them
     FL_GUIDE_PLANE_CHANGES,   // FlChangeMap.square; not cropped, and of this frame alone
     FL_N_GUIDE_PLANES,
 } FlGuidePlane;
-
-#define FL_CONTOUR_ONE 1024
 
 /** A frame that looks like the one before shares its blocks. */
 typedef struct FlFrameRecord {

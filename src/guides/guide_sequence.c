@@ -2,7 +2,6 @@
 #include "base/parallel_error.h"
 #include "guides/build_guides.h"
 #include "guides/change_map.h"
-#include "guides/contour_speed.h"
 #include "guides/displacement.h"
 #include "guides/distance.h"
 #include "guides/extent.h"
@@ -177,28 +176,6 @@ static bool get_motion(const FlGuideSequence *sequence, int frame, FlGuides *gui
     return true;
 }
 
-/** The speed of the contour: of more than its box. */
-static bool get_contour(const FlGuideSequence *sequence, int frame, FlGuides *guides,
-                        GError **error)
-{
-    const FlFrameRecord *record = &sequence->frames[frame];
-    const FlRect part = fl_guides_rect(guides);
-    const FlOutline outline = {.frame_width = sequence->source.width,
-                               .frame_height = sequence->source.height,
-                               .box = record->box};
-    const FlRect rect = fl_contour_rect(&outline, sequence->params.contour_px);
-    const size_t n = fl_rect_pixels(rect);
-    if (record->holder[FL_GUIDE_PLANE_CONTOUR] < 0)
-        return true;
-    g_autofree int32_t *fixed = fl_alloc_unset(n, sizeof *fixed, "a contour", error);
-    if (!fixed ||
-        !fl_plane_store_get(sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_CONTOUR),
-                            fixed, n, 1, error))
-        return false;
-    place_fixed(rect, fixed, 1, FL_CONTOUR_ONE, part, guides->contour_speed);
-    return true;
-}
-
 bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame)
 {
     return sequence->frames[frame].rests;
@@ -248,7 +225,7 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
     clear_plane(guides, guides->flow, 2 * n * sizeof *guides->flow);
     clear_plane(guides, guides->ext_plus, n * sizeof *guides->ext_plus);
     clear_plane(guides, guides->ext_minus, n * sizeof *guides->ext_minus);
-    clear_plane(guides, guides->contour_speed, n * sizeof *guides->contour_speed);
+    memset(guides->bare, 255, n);
     const FlFrameRecord *record = &sequence->frames[frame];
     const size_t area = fl_rect_pixels(record->box);
     guides->has_motion = false;
@@ -259,8 +236,7 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
             return false;
         fl_rect_copy(shape, record->box, guides->mask, part, 1);
         fl_rect_copy(shape + area, record->box, guides->angle, part, 1);
-        if (!get_motion(sequence, frame, guides, error) ||
-            !get_contour(sequence, frame, guides, error))
+        if (!get_motion(sequence, frame, guides, error))
             return false;
     }
     guides->blank = false;
@@ -342,7 +318,7 @@ bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)
         (guides->angle = fl_alloc_scratch(n, 1, what, error)) &&
         (guides->ext_plus = fl_alloc_scratch(n, sizeof *guides->ext_plus, what, error)) &&
         (guides->ext_minus = fl_alloc_scratch(n, sizeof *guides->ext_minus, what, error)) &&
-        (guides->contour_speed = fl_alloc_scratch(n, sizeof *guides->contour_speed, what, error)) &&
+        (guides->bare = fl_alloc_scratch(n, 1, what, error)) &&
         (guides->motion = fl_alloc_scratch(2 * n, sizeof *guides->motion, what, error)) &&
         (guides->turn = fl_alloc_scratch(n, sizeof *guides->turn, what, error)))
         guides->blank = true;
@@ -356,7 +332,6 @@ void fl_guides_drop_motion(FlGuides *guides)
     g_clear_pointer(&guides->flow, g_free);
     g_clear_pointer(&guides->motion, g_free);
     g_clear_pointer(&guides->turn, g_free);
-    g_clear_pointer(&guides->contour_speed, g_free);
 }
 
 void fl_guides_clear(FlGuides *guides)
@@ -368,7 +343,7 @@ void fl_guides_clear(FlGuides *guides)
     g_free(guides->angle);
     g_free(guides->ext_plus);
     g_free(guides->ext_minus);
-    g_free(guides->contour_speed);
+    g_free(guides->bare);
     g_free(guides->motion);
     g_free(guides->turn);
     fl_resting_parts_clear(&guides->resting);

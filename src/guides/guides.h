@@ -17,7 +17,6 @@ typedef struct FlGuideParams {
     float flow_limit;      // a contour moves at most this share of the larger side in one frame
     float dist_sigma_px; // spatial Gaussian on the distance that flow is made from [P21 §4.1]; 0:
                          // none
-    float contour_px;    // 1/480 of the page's larger side, for FlGuides.contour_speed; 0: off
 } FlGuideParams;
 
 /**
@@ -39,8 +38,7 @@ typedef struct FlGuides {
     uint8_t *angle;   // direction of the flow
     float *ext_plus;  // |sum of the flow since the pixel was last outside the mask|, px
     float *ext_minus; // the same, summed from the end of the sequence
-    float *contour_speed; // px per frame by which the contour next to a pixel, inside or outside,
-                          // advances: fl_contour_speed(); 0 where that is not made
+    uint8_t *bare;    // share of the surroundings outside that is free of other shapes, 0..255
     // The drawing's motion into the frame, if the source knows the motion:
     bool has_motion; // somewhere in the mask; else the two planes are undefined
     int32_t *motion; // interleaved, FL_MOTION_ONE a px, FL_MOTION_UNKNOWN; 2 * width * height

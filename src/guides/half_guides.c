@@ -38,7 +38,7 @@ bool fl_guides_double(const FlGuides *half, int width, int height, FlGuides *ful
     fl_flow_double(half->flow, width, height, full->flow);
     double_lengths(half->ext_plus, width, height, 1, full->ext_plus);
     double_lengths(half->ext_minus, width, height, 1, full->ext_minus);
-    double_lengths(half->contour_speed, width, height, 1, full->contour_speed);
+    fl_plane_double(half->bare, width, height, 1, full->bare);
     if (!half->has_motion)
         return true;
     fl_plane_double(half->turn, width, height, sizeof *full->turn, full->turn);

@@ -248,6 +248,7 @@ void fl_plan_free(FlPlan *plan)
     g_free(plan->painted);
     g_free(plan->painted_of);
     g_free(plan->edge_limits);
+    g_free(plan->ground);
     g_free(plan->seen);
     g_free(plan->hold_of);
     g_free(plan->hands);

@@ -24,6 +24,7 @@ typedef struct FlPlan {
     FlSurround *surround;
     const FlMaskStore *masks; // of the surround
     FlEdge *edge_limits;      // by region
+    bool *ground;             // by region: it is the ground on which the others, figures, move
     bool *seen; // by region: it is not painted, or something of it shows; NULL: not known
     FlStyleCache *styles;
     int n_painted;
@@ -54,6 +55,11 @@ typedef struct FlPlan {
     const FlSinkFormat *movie_format;
     uint8_t paper[3];
 } FlPlan;
+
+/** The share of the page that a region has on average of the film's frames. */
+double fl_plan_share_of_page(const FlPlan *plan, int region);
+
+#define FL_GROUND_SHARE 0.4 // of the page: a larger region is ground
 
 /**
  * Reads config and drawing and settles how every region is painted, without painting or writing.

@@ -119,10 +119,23 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     return true;
 }
 
+double fl_plan_share_of_page(const FlPlan *plan, int region)
+{
+    const FlRegion *r = fl_drawing_region(plan->drawing, region);
+    const double page = (double)fl_drawing_width(plan->drawing) * fl_drawing_height(plan->drawing);
+    const double px = plan->half ? r->area_px / 4 : r->area_px;
+    return px * r->n_present / MAX(fl_drawing_frames(plan->drawing), 1) / page;
+}
+
 bool fl_plan_choose_styles(FlPlan *plan, GError **error)
 {
+    const int n_regions = fl_drawing_regions(plan->drawing);
+    g_free(plan->ground);
+    plan->ground = g_new0(bool, MAX(n_regions, 1));
+    for (int r = 0; r < n_regions; r++)
+        plan->ground[r] = fl_plan_share_of_page(plan, r) > FL_GROUND_SHARE;
     plan->surround =
-        fl_surround_new(fl_drawing_regions(plan->drawing), fl_drawing_frames(plan->drawing),
+        fl_surround_new(n_regions, fl_drawing_frames(plan->drawing),
                         fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing), error);
     plan->masks = plan->surround ? fl_surround_masks(plan->surround) : NULL;
     for (int p = 0; plan->surround && p < plan->n_painted; p++)

@@ -78,7 +78,7 @@ static bool store_masks(FlPlan *plan, FlNeighbours *neighbours, int frame, GErro
     g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
     return draws && note_visible_regions(plan, draws, error) &&
            fl_surround_put(plan->surround, frame, draws, plan->edge_limits, plan->painted_of,
-                           neighbours, error);
+                           plan->ground, neighbours, error);
 }
 
 /* A pass over all frames. */

@@ -3,7 +3,6 @@
 #include "base/page.h"
 #include "base/schedule.h"
 #include "compose/colourise.h"
-#include "guides/contour_speed.h"
 #include "job/moved_paint.h"
 #include "job/style_cache.h"
 #include "keep/sealed.h"

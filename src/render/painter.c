@@ -2,7 +2,6 @@
 
 #include "base/alloc.h"
 #include "base/rng.h"
-#include "guides/contour_speed.h"
 #include "job/paint_files.h"
 #include "render/painter_guides.h"
 #include <math.h>
@@ -124,10 +123,7 @@ static bool open_engine(FlPainter *painter, GError **error)
 static bool make_sequence(FlPainter *painter, GError **error)
 {
     const FlGuideSource source = fl_painter_guide_source(painter);
-    FlGuideParams params = fl_guide_params(&painter->plan->settings.params);
-    const FlRect page = fl_painter_page(painter);
-    if (painter->plan->settings.motion == FL_MOTION_AUTO)
-        params.contour_px = fl_contour_px(page.width, page.height);
+    const FlGuideParams params = fl_guide_params(&painter->plan->settings.params);
     const int how[] = {source.width,
                        source.height,
                        painter->result.rect.x,

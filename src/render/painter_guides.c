@@ -1,6 +1,7 @@
 #include "render/painter_guides.h"
 
 #include "base/alloc.h"
+#include "base/windows.h"
 #include "guides/flow_file.h"
 #include "guides/half_guides.h"
 #include "guides/rim.h"
@@ -264,13 +265,54 @@ static bool make_depth(FlPainter *painter, FlGuides *guides, GError **error)
                : measure_depth(painter, frame, guides, error);
 }
 
-/* The first picture whose motion paint may still dry after in the one in hand. */
-static int first_that_dries(const FlPainter *painter)
+/* The frames that paint takes to dry; 0: it does not show it. */
+static int dries(const FlPainter *painter)
 {
     const FlEngine *engine = painter->plan->engine;
     const FlParams *params = &painter->plan->settings.params;
-    const int frames = engine->drying ? engine->drying(painter->plan->style, params) : 0;
-    return MAX(painter->picture - frames, 1);
+    return engine->drying ? engine->drying(painter->plan->style, params) : 0;
+}
+
+#define BARE_PX 4 // half the side of the window of FlGuides.bare, for a page of 480 px
+
+/* The share of the surroundings that other figures leave bare: there an edge wets paper. */
+static bool measure_bare(const FlPainter *painter, FlGuides *guides, GError **error)
+{
+    const FlSurround *surround = painter->shapes->surround;
+    const FlRect place = guided_place(painter, guides), whole = fl_painter_page(painter);
+    const FlRect part = fl_guides_rect(guides);
+    const size_t n = fl_rect_pixels(part), scale = halves(painter) ? 2 : 1;
+    const int side = MAX(whole.width, whole.height) / (int)scale;
+    const int reach = MAX((BARE_PX * side + 240) / 480, 1);
+    if (!surround)
+        return true;
+    g_autofree uint16_t *lowest =
+        fl_alloc_unset(fl_rect_pixels(place), sizeof *lowest, "a guide", error);
+    g_autofree int16_t *outside = fl_alloc_unset(n, sizeof *outside, "a guide", error);
+    g_autofree uint32_t *all = fl_alloc_unset(2 * n, sizeof *all, "a guide", error);
+    if (!lowest || !outside || !all ||
+        !fl_surround_lowest(surround, frame_of(painter, painter->picture), place, lowest, error))
+        return false;
+    for (size_t p = 0; p < n; p++)
+        outside[p] = guides->mask[p] < FL_INSIDE;
+    fl_window_sums(outside, part, reach, all);
+    for (int y = 0; y < part.height; y++)
+        for (int x = 0; x < part.width; x++) {
+            const size_t p = (size_t)y * (size_t)part.width + (size_t)x;
+            const size_t i = MIN(scale * (size_t)x, (size_t)place.width - 1);
+            const size_t j = MIN(scale * (size_t)y, (size_t)place.height - 1);
+            outside[p] = outside[p] && lowest[j * (size_t)place.width + i] == 0;
+        }
+    fl_window_sums(outside, part, reach, all + n);
+    for (size_t p = 0; p < n; p++)
+        guides->bare[p] = (uint8_t)(255 * all[n + p] / MAX(all[p], 1));
+    return true;
+}
+
+/* The first picture whose motion paint may still dry after in the one in hand. */
+static int first_that_dries(const FlPainter *painter)
+{
+    return MAX(painter->picture - dries(painter), 1);
 }
 
 static bool may_dry(const FlPainter *painter)
@@ -391,7 +433,8 @@ static bool fill_guides(FlPainter *painter, FlRect part, FlGuides *guides, GErro
     guides->x = part.x, guides->y = part.y;
     return fl_guide_sequence_distance(painter->sequence, painter->picture, guides, error) &&
            make_depth(painter, guides, error) &&
-           fl_guide_sequence_planes(painter->sequence, painter->picture, guides, error);
+           fl_guide_sequence_planes(painter->sequence, painter->picture, guides, error) &&
+           (!dries(painter) || measure_bare(painter, guides, error));
 }
 
 bool fl_painter_make_guides(FlPainter *painter, GError **error)

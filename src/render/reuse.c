@@ -112,7 +112,7 @@ static void add_guides(FlDigest *digest, const FlGuides *guides)
     fl_digest_add(digest, guides->angle, n);
     fl_digest_add(digest, guides->ext_plus, n * sizeof *guides->ext_plus);
     fl_digest_add(digest, guides->ext_minus, n * sizeof *guides->ext_minus);
-    fl_digest_add(digest, guides->contour_speed, n * sizeof *guides->contour_speed);
+    fl_digest_add(digest, guides->bare, n);
     if (!guides->has_motion)
         return;
     fl_digest_add(digest, guides->motion, 2 * n * sizeof *guides->motion);

@@ -19,6 +19,7 @@
 #define FRESH_AT 0.95f  // and from which on it is fresh
 #define GATHERS 0.45f   // added density at the rim of a receding edge
 #define RIM 7.0f        // units: how wide it is
+#define BESIDE 3.0f     // units outside the contour: there an edge meets paper or paint
 
 static float smoothstep(float low, float high, float v)
 {
@@ -48,23 +49,34 @@ static float edge_of(float units)
     return units > STILL ? (1 - expf(-units / FULL)) * smoothstep(STILL, SURE, units) : 0;
 }
 
-/* In a first frame the flow stands for the motion. */
+/* The share of bare paper just outside the contour, along the gradient g of the depth: at edges
+ * over other paint no paper gets wet. */
+static float bare_beside(const FlDrying *drying, size_t p, int x, int y, const float g[2])
+{
+    const FlGuides *guides = drying->guides;
+    const float length = sqrtf(g[0] * g[0] + g[1] * g[1]);
+    const float out = (guides->distance[p] + BESIDE * drying->unit_px) / MAX(length, 0.1f);
+    const int i = CLAMP(x - guides->x - (int)lrintf(out * g[0]), 0, guides->width - 1);
+    const int j = CLAMP(y - guides->y - (int)lrintf(out * g[1]), 0, guides->height - 1);
+    return smoothstep(0.1f, 0.9f,
+                      (float)guides->bare[(size_t)j * (size_t)guides->width + (size_t)i] / 255);
+}
+
+/* The flow that is constructed from the masks is the contour's own motion near the contour. */
 static Place place_of(const FlDrying *drying, size_t p, int x, int y, bool first)
 {
     const FlGuides *guides = drying->guides;
-    const float unit = drying->unit_px;
-    float v = guides->contour_speed[p], speed = 0;
-    if (first) {
-        const float *flow = guides->flow + 2 * p;
-        float g[2];
-        fl_distance_gradient(guides->distance, guides->width, guides->height, x - guides->x,
-                             y - guides->y, g);
-        v = -(flow[0] * g[0] + flow[1] * g[1]);
+    const float unit = drying->unit_px, *flow = guides->flow + 2 * p;
+    float g[2];
+    fl_distance_gradient(guides->distance, guides->width, guides->height, x - guides->x,
+                         y - guides->y, g);
+    const float v = -(flow[0] * g[0] + flow[1] * g[1]) * bare_beside(drying, p, x, y, g);
+    float speed = 0;
+    if (first)
         speed = hypotf(flow[0], flow[1]);
-    } else if (guides->has_motion && guides->motion[2 * p] != FL_MOTION_UNKNOWN) {
+    else if (guides->has_motion && guides->motion[2 * p] != FL_MOTION_UNKNOWN)
         speed =
             hypotf((float)guides->motion[2 * p], (float)guides->motion[2 * p + 1]) / FL_MOTION_ONE;
-    }
     return (Place){.band = band_of(guides, p, unit),
                    .lead = edge_of(v / unit),
                    .trail = edge_of(-v / unit),

@@ -97,6 +97,12 @@ static bool read_ahead(const FlWet *wet, const FlRegionPlan *plan, int now, Plan
     return true;
 }
 
+/** No other figure is below a region. */
+static int lies_lowest(uint16_t lowest, int region)
+{
+    return lowest == 0 || lowest > region;
+}
+
 /** Marks the cells in which a region lies on bare paper: bit 0 now, bit 1 before. */
 static void find_touches(const FlWet *wet, int region, Planes *planes)
 {
@@ -106,7 +112,8 @@ static void find_touches(const FlWet *wet, int region, Planes *planes)
             const size_t cell =
                 (size_t)(rect.y + y) * (size_t)wet->sheet.page.width + (size_t)(rect.x + x);
             planes->touches[(size_t)y * (size_t)rect.width + (size_t)x] =
-                (uint8_t)((wet->lowest[0][cell] >= region) + 2 * (wet->lowest[1][cell] >= region));
+                (uint8_t)(lies_lowest(wet->lowest[0][cell], region) |
+                          lies_lowest(wet->lowest[1][cell], region) << 1);
         }
 }
 

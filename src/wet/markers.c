@@ -6,21 +6,6 @@
 #include "params/text.h"
 #include "wet/curves.h"
 
-#define GROUND_SHARE 0.4 // of the page: a larger region is ground
-
-static double share_of_page(const FlPlan *plan, int region)
-{
-    const FlRegion *r = fl_drawing_region(plan->drawing, region);
-    const double page = (double)fl_drawing_width(plan->drawing) * fl_drawing_height(plan->drawing);
-    const double px = plan->half ? r->area_px / 4 : r->area_px;
-    return px * r->n_present / MAX(fl_drawing_frames(plan->drawing), 1) / page;
-}
-
-bool fl_wet_is_ground(const FlPlan *plan, int region)
-{
-    return share_of_page(plan, region) > GROUND_SHARE;
-}
-
 static bool wants_marks(const FlPlan *plan, const FlRegionPlan *region)
 {
     const FlFrontStyle *style = &region->style->front;
@@ -75,8 +60,9 @@ static bool size_dials(const FlWet *wet, FlMarker *marker, GError **error)
     if (!mean_half_width(wet, plan->region, &width, error))
         return false;
     const float page = FL_WET_PAGE_PX * wet->sheet.px;
-    const float dial = (1 - fl_ease(0.22f, 0.40f, (float)share_of_page(wet->plan, plan->region))) *
-                       fl_ease(0.008f, 0.030f, width / page);
+    const float dial =
+        (1 - fl_ease(0.22f, 0.40f, (float)fl_plan_share_of_page(wet->plan, plan->region))) *
+        fl_ease(0.008f, 0.030f, width / page);
     const double overrun = wet->plan->options.overrun;
     marker->dials = (FlWetDials){&plan->style->front, dial * (float)plan->settings.front,
                                  dial * (float)plan->settings.stain, (float)overrun};
@@ -138,10 +124,10 @@ bool fl_wet_find_camera(const FlPlan *plan, int *camera, GError **error)
 {
     const char *wanted = plan->options.camera ? plan->options.camera : "auto";
     const bool none = g_str_equal(wanted, "none"), found = g_str_equal(wanted, "auto");
-    double most = GROUND_SHARE;
+    double most = FL_GROUND_SHARE;
     *camera = -1;
     for (int r = 0; r < fl_drawing_regions(plan->drawing) && !none; r++) {
-        const double share = share_of_page(plan, r);
+        const double share = fl_plan_share_of_page(plan, r);
         const bool named = g_str_equal(wanted, fl_drawing_region(plan->drawing, r)->name);
         if (named || (found && share > most))
             *camera = r, most = share;

@@ -20,9 +20,6 @@ FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], int known, FlWetMo
     *wet = (FlWet){.plan = plan, .motion = motion, .motion_data = data, .cell = cell, .at = -1};
     memcpy(wet->paper, paper, 3);
     wet->known = known;
-    wet->ground = g_new0(bool, MAX(fl_drawing_regions(plan->drawing), 1));
-    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
-        wet->ground[r] = fl_wet_is_ground(plan, r);
     wet->lowest_frame = -1;
     const int columns = (width + cell - 1) / cell, rows = (height + cell - 1) / cell;
     const size_t n = (size_t)columns * (size_t)rows;
@@ -51,7 +48,6 @@ void fl_wet_free(FlWet *wet)
         g_clear_pointer(&wet->marker[m].stains, g_array_unref);
     }
     g_free(wet->marker);
-    g_free(wet->ground);
     free(wet->lowest[0]);
     free(wet->lowest[1]);
     free(wet->layer.rgba);
@@ -62,27 +58,22 @@ void fl_wet_free(FlWet *wet)
 
 /* ---- the frame ------------------------------------------------------------------------------ */
 
-/** The lowest painted region of each cell. */
+/** The lowest figure of each cell. */
 static bool find_lowest(const FlWet *wet, int frame, uint16_t *lowest, GError **error)
 {
-    const FlRect page = wet->sheet.page;
-    memset(lowest, 0xff, fl_rect_pixels(page) * sizeof *lowest);
-    for (int p = wet->plan->n_painted - 1; p >= 0; p--) {
-        const int region = wet->plan->painted[p].region;
-        const int shown = fl_wet_shown_by(&wet->plan->painted[p], frame);
-        const FlRect box = fl_wet_cells_of(wet, fl_mask_store_box(wet->plan->masks, region, shown));
-        if (box.width == 0 || wet->ground[region])
-            continue;
-        g_autofree uint8_t *mask = fl_alloc_unset(fl_rect_pixels(box), 1, "a mask", error);
-        if (!mask || !fl_wet_get_mask(wet, region, shown, box, mask, error))
-            return false;
-        for (int y = 0; y < box.height; y++)
-            for (int x = 0; x < box.width; x++) {
-                const size_t cell = (size_t)(box.y + y) * (size_t)page.width + (size_t)(box.x + x);
-                if (mask[(size_t)y * (size_t)box.width + (size_t)x] >= FL_INSIDE)
-                    lowest[cell] = MIN(lowest[cell], (uint16_t)region);
-            }
-    }
+    const FlRect page = wet->sheet.page, px = fl_wet_px_of(wet, page);
+    const int c = wet->cell;
+    if (c == 1)
+        return fl_surround_lowest(wet->plan->surround, frame, px, lowest, error);
+    g_autofree uint16_t *full = fl_alloc_unset(fl_rect_pixels(px), sizeof *full, "regions", error);
+    if (!full || !fl_surround_lowest(wet->plan->surround, frame, px, full, error))
+        return false;
+    for (int y = 0; y < page.height; y++)
+        for (int x = 0; x < page.width; x++) {
+            const int i = MIN(c * x + c / 2, px.width - 1), j = MIN(c * y + c / 2, px.height - 1);
+            lowest[(size_t)y * (size_t)page.width + (size_t)x] =
+                full[(size_t)j * (size_t)px.width + (size_t)i];
+        }
     return true;
 }
 
@@ -187,7 +178,7 @@ bool fl_wet_show(FlWet *wet, GError **error)
 {
     free(wet->layer.rgba);
     const bool shown = fl_wet_sheet_layer(&wet->sheet, wet->paper, &wet->layer, error);
-    wet->layer.ground = wet->ground;
+    wet->layer.ground = wet->plan->ground;
     return shown;
 }
 

@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 
-static FlRect fl_wet_px_of(const FlWet *wet, FlRect cells)
+FlRect fl_wet_px_of(const FlWet *wet, FlRect cells)
 {
     const FlDrawing *drawing = wet->plan->drawing;
     const FlRect page = {0, 0, fl_drawing_width(drawing), fl_drawing_height(drawing)};

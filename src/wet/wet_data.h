@@ -34,10 +34,9 @@ struct FlWet {
     FlWetSheet sheet;
     int n_markers;
     FlMarker *marker;
-    bool *ground;             // by region
     int camera;               // the region that carries the paper along; -1: the paper stays
     float camera_x, camera_y; // motion of the paper that is less than a cell
-    uint16_t *lowest[2];      // of the page: the lowest region in each cell, now and before
+    uint16_t *lowest[2];      // of the page, now and before: fl_surround_lowest()
     int lowest_frame;         // of lowest[0]
     FlLaid laid;
     FlStainLayer layer;
@@ -53,6 +52,9 @@ typedef struct FlWetStep {
     const FlLaid *laid; // of the step before; NULL: not known
 } FlWetStep;
 
+/** The px of cells. */
+FlRect fl_wet_px_of(const FlWet *wet, FlRect cells);
+
 /** The cells that a rectangle of px touches. */
 FlRect fl_wet_cells_of(const FlWet *wet, FlRect px);
 
@@ -63,9 +65,6 @@ bool fl_wet_get_mask(const FlWet *wet, int region, int frame, FlRect rect, uint8
 /** The motion in the middle of each cell, in cells. */
 bool fl_wet_get_motion(const FlWet *wet, const FlMarker *marker, int before, int now, FlRect rect,
                        float *motion, GError **error);
-
-/** Says if a region is as large as the page. */
-bool fl_wet_is_ground(const FlPlan *plan, int region);
 
 /** Finds the region that carries the paper along; FL_ERROR_USAGE for an unknown name. */
 bool fl_wet_find_camera(const FlPlan *plan, int *camera, GError **error);
