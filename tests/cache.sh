@@ -95,7 +95,7 @@ result $? "of a shape that moves on, no more than the last frames ($painted of 1
 same_until() { # same_until FRAME: the frames before it have the same bytes
     local i
     for ((i = 1; i < $1; i++)); do
-        cmp -s "now/w_$(printf %04d "$i").png" "early/w_$(printf %04d "$i").png" || return 1
+        same "now/w_$(printf %04d "$i").png" "early/w_$(printf %04d "$i").png" || return 1
     done
 }
 same_until $((15 - painted))
@@ -234,9 +234,9 @@ if command -v ffmpeg >/dev/null; then
         "$program" film -s "$style" -o now/w.mkv --progress none --cache kept "$@" >out 2>err
     }
     film && mv now/w.mkv whole.mkv && film && grep -q 'made of 6 frames' err &&
-        ! grep -q 'painted 6' err && cmp -s now/w.mkv whole.mkv && film && grep -q 'nothing to do' err
+        ! grep -q 'painted 6' err && same now/w.mkv whole.mkv && film && grep -q 'nothing to do' err
     result $? 'a film whose frames are all there is only encoded, and has the same bytes'
-    film -y --fps 12 && grep -q 'made of 6 frames' err && ! cmp -s now/w.mkv whole.mkv
+    film -y --fps 12 && grep -q 'made of 6 frames' err && ! same now/w.mkv whole.mkv
     result $? 'so is one at another speed'
     rm -r now
 else

@@ -176,7 +176,7 @@ refuses 'a layer that exists is not painted over' 1 'a/*_1.png: already exists; 
     whole -s 01 -o 'c/w_%d.png' --layers 'a/{region}_%d.png'
 rm a/w_2.png && touch -d @0 a/w_1.png
 "$program" whole -s 01 --detail draft -o 'a/w_%d.png' --layers 'a/{region}_%d.png' --no-clobber -j1 \
-    >out 2>err && [ "$(stat -c %Y a/w_1.png)" = 0 ] && diff -r a b >out
+    >out 2>err && [ "$(stat -c %Y a/w_1.png)" = 0 ] && same a b
 result $? '--no-clobber paints what is missing, and gives the same bytes'
 
 # Layers as frames: one file, as Inkscape keeps it, and the same frames as files.
@@ -192,7 +192,7 @@ for i in 1 2 3; do
 done
 echo '</svg>' >>film.svg
 "$program" film.svg --frames-from layers -s 01 -q -o 'one/w%d.png' >out 2>err &&
-    "$program" layered -s 01 -q -o 'many/w%d.png' >out 2>err && diff -r one many >out && [ -s one/w3.png ]
+    "$program" layered -s 01 -q -o 'many/w%d.png' >out 2>err && same one many && [ -s one/w3.png ]
 result $? 'frames that are layers of one file are painted as if each had a file'
 sed 's|</svg>|<g><use href="#c2"/></g></svg>|; s|groupmode|mode|' film.svg >clones.svg
 "$program" clones.svg --frames-from layers -f 4 --list-regions >out 2>err && grep -q 'hat-aa3311\|red-aa3311 .* 1/1' out
@@ -237,7 +237,7 @@ result $? 'progress is told while frames are read and masks are drawn'
     [ "$(find apart -name '.*')" = '' ] && [ ! -e fluidy ]
 result $? '--paint with --no-frames writes the paint alone'
 "$program" "$film" -s 01 -W 96 --detail draft -j1 --merge --paint 'apart/d/{region}_%d.png' -o 'apart/m%d.png' --front 0 --stain 0 -f 6 >out 2>err &&
-    "$program" "$film" -s 01 -W 96 --detail draft -j1 -o 'apart/w%d.png' --front 0 --stain 0 -f 1-6 >out 2>err && cmp apart/m6.png apart/w6.png
+    "$program" "$film" -s 01 -W 96 --detail draft -j1 -o 'apart/w%d.png' --front 0 --stain 0 -f 1-6 >out 2>err && same apart/m6.png apart/w6.png
 result $? 'and it is the paint of the film'
 # Its text says where the region has moved to; whatever it says, the frame is painted.
 /usr/bin/python3 - apart/d/*_6.png <<'EOF'
@@ -250,7 +250,7 @@ for path in sys.argv[1:]:
     open(path, 'wb').write(data[:at] + text + zlib.crc32(text).to_bytes(4, 'big') + data[at + 8 + length:])
 EOF
 "$program" "$film" -s 01 -W 96 --detail draft -j1 --merge --paint 'apart/d/{region}_%d.png' -o 'apart/n%d.png' --front 0 --stain 0 -f 6 >out 2>err &&
-    [ -s apart/n6.png ] && ! cmp -s apart/n6.png apart/w6.png
+    [ -s apart/n6.png ] && ! same apart/n6.png apart/w6.png
 result $? 'a text that says nothing is left alone'
 ls whole/*1.svg whole/*2.svg | "$program" - -s 01 --detail draft -o 'listed/%d.png' >out 2>err &&
     [ "$(ls listed | xargs)" = '1.png 2.png' ]
@@ -273,9 +273,9 @@ done
 echo "$drawing$(printf '<circle r="9" fill="#ff0000"/>%.0s' {1..60})</svg>" >gap/w_0004.svg
 rm gap/w_0003.svg
 "$program" gap -s 01 --missing hold --limit elements=50 --boil 1 --line-boil 1 --paper-boil 1 -o 'held/w_%d.png' \
-    --layers 'held/{region}_%d.png' >out 2>err && cmp held/w_2.png held/w_3.png >>err &&
-    cmp held/w_2.png held/w_4.png >>err && cmp held/red-aa3311_2.png held/red-aa3311_4.png >>err &&
-    ! cmp -s held/w_4.png held/w_5.png && ! cmp -s held/w_1.png held/w_2.png
+    --layers 'held/{region}_%d.png' >out 2>err && same held/w_2.png held/w_3.png &&
+    same held/w_2.png held/w_4.png && same held/red-aa3311_2.png held/red-aa3311_4.png &&
+    ! same held/w_4.png held/w_5.png && ! same held/w_1.png held/w_2.png
 result $? 'a frame that is held is the one before, to the bit'
 
 # on_a_terminal COMMAND: what it prints there, control characters spelt out
@@ -328,7 +328,7 @@ result $? 'a printed config fits the drawing after all its colours have changed'
     [ "$(grep -cE '^(tint = #2|passthrough|background)' shot.conf)" = 3 ] &&
     "$program" "$film" -c shot.conf -W 96 -f 1 --detail draft -o edited_%d.png >out 2>err &&
     "$program" "$film" -s 01 -W 96 -f 1 --detail draft -o plain_%d.png >out 2>err &&
-    ! cmp -s edited_1.png plain_1.png
+    ! same edited_1.png plain_1.png
 result $? 'three edits of the printed config change the picture'
 cat >all.conf <<'END'
 [project]
@@ -399,12 +399,12 @@ of_medium() { # of_medium NAME STYLE ARGUMENT...: a frame in medium/NAME.png
 printf '[defaults]\nmedium = transparent\n' >glaze.conf
 of_medium none 01 -b none && of_medium opaque 01 -b none --medium opaque &&
     of_medium config 01 -b none -c glaze.conf && of_medium glaze 01 -b none --medium transparent &&
-    cmp -s medium/none1.png medium/opaque1.png && cmp -s medium/config1.png medium/glaze1.png &&
-    ! cmp -s medium/none1.png medium/glaze1.png
+    same medium/none1.png medium/opaque1.png && same medium/config1.png medium/glaze1.png &&
+    ! same medium/none1.png medium/glaze1.png
 result $? 'over nothing paint is opaque unless the config or the command line say otherwise'
 of_medium paper 01 && of_medium paper-glaze 01 --medium transparent &&
-    cmp -s medium/paper1.png medium/paper-glaze1.png && of_medium dust 04 -b none &&
-    of_medium dust-body 04 -b none --medium body && cmp -s medium/dust1.png medium/dust-body1.png
+    same medium/paper1.png medium/paper-glaze1.png && of_medium dust 04 -b none &&
+    of_medium dust-body 04 -b none --medium body && same medium/dust1.png medium/dust-body1.png
 result $? 'on its paper it is transparent, and charcoal has body as its style says'
 
 # Paper and the unevenness of paint are composing: the paint below them is the same.
@@ -414,25 +414,25 @@ on_paper() { # on_paper NAME ARGUMENT...: a frame, and its paint, in sheet/NAMEâ
 }
 same_paint() { # same_paint NAMEâ€¦: the paint of each is that of sheet/auto
     for other; do
-        cmp -s sheet/auto-*_1.png sheet/"$other"-*_1.png || return 1
+        same sheet/auto-*_1.png sheet/"$other"-*_1.png || return 1
     done
 }
 printf '[project]\npaper = kraft\n' >kraft.conf
 on_paper auto && on_paper cold --paper cold && on_paper bare --paper none --granulation 0 &&
     on_paper relief --paper-relief 0 && on_paper seed --paper-seed 5 && on_paper kraft -c kraft.conf &&
-    cmp -s sheet/auto1.png sheet/cold1.png && ! cmp -s sheet/auto1.png sheet/bare1.png &&
-    ! cmp -s sheet/auto1.png sheet/seed1.png && ! cmp -s sheet/auto1.png sheet/kraft1.png &&
-    ! cmp -s sheet/bare1.png sheet/relief1.png && ! cmp -s sheet/auto1.png sheet/relief1.png &&
+    same sheet/auto1.png sheet/cold1.png && ! same sheet/auto1.png sheet/bare1.png &&
+    ! same sheet/auto1.png sheet/seed1.png && ! same sheet/auto1.png sheet/kraft1.png &&
+    ! same sheet/bare1.png sheet/relief1.png && ! same sheet/auto1.png sheet/relief1.png &&
     same_paint cold bare relief seed kraft
 result $? 'paper is cold unless it is said, and changes no paint'
 on_paper white -b '#ffffff' && on_paper white-none -b '#ffffff' --paper none &&
-    on_paper white-cold -b '#ffffff' --paper cold && ! cmp -s sheet/white1.png sheet/white-cold1.png &&
-    ! cmp -s sheet/white1.png sheet/white-none1.png
+    on_paper white-cold -b '#ffffff' --paper cold && ! same sheet/white1.png sheet/white-cold1.png &&
+    ! same sheet/white1.png sheet/white-none1.png
 result $? 'over a background the sheet has its tooth alone unless it is asked for'
 on_paper preset --preset fluidymation --paper none &&
     on_paper preset-zero --preset fluidymation --paper none --granulation 0 --load 0 --pigments 0 &&
     on_paper preset-play --preset fluidymation --paper none --pigments 1 &&
-    cmp -s sheet/preset1.png sheet/preset-zero1.png && ! cmp -s sheet/preset1.png sheet/preset-play1.png
+    same sheet/preset1.png sheet/preset-zero1.png && ! same sheet/preset1.png sheet/preset-play1.png
 result $? 'the presets of the papers have even paint'
 
 # What is written opens as it looks.
@@ -449,14 +449,14 @@ fi
 result $? 'the alpha of PNG files is straight'
 "$program" whole -s 01 -q -f 1 --format png16 -o 'open/deep%d.png' >out 2>err &&
     on_paper deep --paper open/deep1.png && on_paper ground -b open/deep1.png &&
-    ! cmp -s sheet/deep1.png sheet/auto1.png && ! cmp -s sheet/ground1.png sheet/auto1.png
+    ! same sheet/deep1.png sheet/auto1.png && ! same sheet/ground1.png sheet/auto1.png
 result $? 'paper and background may have 16 bits'
 if ! command -v ffmpeg >/dev/null; then
     skip 'they may be JPEG pictures' 'no ffmpeg'
 else
     ffmpeg -v error -y -i open/deep1.png open/Deep.JPG && on_paper jpeg --paper open/Deep.JPG &&
-        on_paper jpeg-ground -b open/Deep.JPG && ! cmp -s sheet/jpeg1.png sheet/auto1.png &&
-        ! cmp -s sheet/jpeg-ground1.png sheet/auto1.png &&
+        on_paper jpeg-ground -b open/Deep.JPG && ! same sheet/jpeg1.png sheet/auto1.png &&
+        ! same sheet/jpeg-ground1.png sheet/auto1.png &&
         head -c 100 open/Deep.JPG >open/cut.jpg && ! on_paper cut --paper open/cut.jpg &&
         grep -q 'open/cut.jpg: a damaged JPEG picture' err
     result $? 'they may be JPEG pictures'
@@ -476,7 +476,7 @@ for half in on off; do
         >some-$half.conf
     "$program" all.d -c some-$half.conf -o "some-$half/w_%d.png" -q >out 2>err || break
 done
-diff -r some-on some-off >out && [ -s some-on/w_1.png ]
+same some-on some-off && [ -s some-on/w_1.png ]
 result $? 'among others a draft is not made at half the size'
 printf '[defaults]\nstyle = 01\n[region one]\nmatch-fill = #a93311\nengine = lazyfluids\n' >two-engines.conf
 drafted() { # a folder, options
@@ -484,7 +484,7 @@ drafted() { # a folder, options
 }
 drafted drafted -j1 && drafted drafted-many -j2 &&
     drafted drafted-seen --report drafted-report --dump drafted-dump --stats drafted.json &&
-    diff -r drafted drafted-many >out && diff -r drafted drafted-seen >out &&
+    same drafted drafted-many && same drafted drafted-seen >out &&
     [ "$(for plane in drafted-dump/*/distance_*.png; do sides "$plane"; done | sort -u)" = '31 23' ]
 result $? 'drafts of two engines are the same on two threads, and where their guides are looked at'
 
@@ -504,7 +504,7 @@ closes() { # closes DRAWING ARGUMENT...: whether closed edges look other than so
     for edges in closed soft; do
         "$program" "$@" -s "$fixtures/style-small" --edges $edges -q -o "$1/$edges%d.png" >out 2>err || return 2
     done
-    ! cmp -s "$1/closed1.png" "$1/soft1.png"
+    ! same "$1/closed1.png" "$1/soft1.png"
 }
 closes meet && { closes lie; [ $? = 1 ]; }
 result $? 'edges are closed where shapes meet, not where one lies over the other'

@@ -17,7 +17,7 @@ no_litter() { # no_litter FOLDER: nothing but frames and the state
 whole_frames() { # whole_frames FOLDER: each of its frames is one of a render without a fault
     local file
     for file in "$1"/*.png; do
-        cmp -s "$file" "whole/${file##*/}" || return 1
+        same "$file" "whole/${file##*/}" || return 1
     done
 }
 

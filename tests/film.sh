@@ -38,11 +38,6 @@ paint() {
     timeout 120 "$program" film -s "$style" -o "$to/w_%04d.png" --progress none "$@" >out 2>err
 }
 
-# same FOLDER FOLDER: they have the same files with the same bytes.
-same() {
-    diff -r "$1" "$2" >/dev/null
-}
-
 # says TEXT: standard error is one line, which has the text.
 says() {
     [ "$(wc -l <err)" = 1 ] && grep -qF -- "$1" err

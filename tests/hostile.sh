@@ -249,8 +249,8 @@ result $? 'a frame that ran out of time is an error, whatever --missing says'
 if [ -n "${ASAN_OPTIONS:-}" ]; then
     skip 'a film holds the frame before those that cannot be drawn, and counts them' 'the sanitizer needs the memory'
 else
-    flat --limit memory=60 --missing hold mixed && [ "$(ls o | wc -l)" = 4 ] && cmp -s o/1.png o/4.png &&
-        cmp -s o/3.png o/4.png && grep -q '2 frames could not be read or drawn and were replaced' err
+    flat --limit memory=60 --missing hold mixed && [ "$(ls o | wc -l)" = 4 ] && same o/1.png o/4.png &&
+        same o/3.png o/4.png && grep -q '2 frames could not be read or drawn and were replaced' err
     result $? 'a film holds the frame before those that cannot be drawn, and counts them'
 fi
 rm -rf o mixed/m_3.svg && crash_one --missing skip mixed && [ ! -e o/1.png ] && [ -e o/2.png ] && [ -e o/4.png ] &&
@@ -281,7 +281,7 @@ unseen() {
     to=without paint
     mv ../gone ../outside
     cp err1 err
-    [ $status = 0 ] && diff -r with without >/dev/null && [ -e with/1.png ] && grep -qF -- "$warning" err
+    [ $status = 0 ] && same with without && [ -e with/1.png ] && grep -qF -- "$warning" err
     result $? "$sentence$1"
 }
 sentence='a drawing does not see '
@@ -352,7 +352,7 @@ kill $server 2>/dev/null
 
 svg x.svg "$shape<image href='big.png' width='48' height='48'/>"
 rm -rf with without
-to=with paint && mv big.png gone.png && to=without paint && ! diff -r with without >/dev/null &&
+to=with paint && mv big.png gone.png && to=without paint && ! same with without &&
     grep -qF 'the image “big.png” does not exist and is left out' err
 result $? 'but it does see one in its folder, and says when it is gone'
 

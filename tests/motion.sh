@@ -33,7 +33,7 @@ done
 paint_disc none --flow $slide --carry 0 && paint_disc all --flow $slide --carry 1 &&
     ! same none carried && same all carried
 result $? 'the share that is carried makes a difference'
-cmp -s none/w_0001.png masks/w_0001.png
+same none/w_0001.png masks/w_0001.png
 result $? 'but not in a first frame'
 paint_disc everything --motion masks --flow $slide && ! same everything carried &&
     ! same everything masks
@@ -45,10 +45,10 @@ result $? 'so it is in the presets of the papers'
 # A recording as small as so small a page asks for has few levels, by which the frames are cropped.
 paint_disc held --hold 2 --style-by-page off --flow 'twice_%d.flo' &&
     paint_disc every_second -f 1-6x2 --style-by-page off --flow 'twice_%d.flo' &&
-    cmp -s held/w_0003.png every_second/w_0003.png && cmp -s held/w_0005.png every_second/w_0005.png
+    same held/w_0003.png every_second/w_0003.png && same held/w_0005.png every_second/w_0005.png
 result $? 'held frames are carried as in a film without those between'
 paint_disc loop --loop --flow $slide && paint_disc loop_none --loop --flow $slide --carry 0 &&
-    ! cmp -s loop/w_0001.png loop_none/w_0001.png
+    ! same loop/w_0001.png loop_none/w_0001.png
 result $? 'a loop is carried over its seam'
 paint_disc draft --detail draft --flow $slide && paint_disc draft_masks --detail draft --motion masks &&
     ! same draft draft_masks
@@ -70,7 +70,7 @@ motion_of() {
 paint_disc seam --loop --dump seam_dump && paint_disc open --dump open_dump &&
     [ "$(motion_of seam_dump/red-aa3311/motion_0001.flo)" = -175 ] &&
     [ "$(motion_of open_dump/red-aa3311/motion_0002.flo)" = 35 ] &&
-    ! cmp -s seam/w_0001.png open/w_0001.png
+    ! same seam/w_0001.png open/w_0001.png
 result $? 'the motion over the seam is from the last frame to the first'
 paint_disc skipped -f 1,2,4-6 --dump gap_dump &&
     [ "$(motion_of gap_dump/red-aa3311/motion_0004.flo)" = 70 ]
@@ -79,9 +79,9 @@ mkdir saved
 mv film/w_0003.svg saved
 paint_disc gap --missing skip && same gap skipped
 result $? 'so it is where files are missing'
-paint_disc held_gap --missing hold && cmp -s held_gap/w_0002.png held_gap/w_0003.png &&
+paint_disc held_gap --missing hold && same held_gap/w_0002.png held_gap/w_0003.png &&
     paint_disc held_masks --missing hold --motion masks &&
-    ! cmp -s held_gap/w_0004.png held_masks/w_0004.png
+    ! same held_gap/w_0004.png held_masks/w_0004.png
 result $? 'or held'
 mv saved/w_0003.svg film
 
@@ -90,10 +90,10 @@ for i in 3 4; do
     sed 's/<circle[^>]*>//' saved/w_000$i.svg >film/w_000$i.svg
 done
 paint_disc back && paint_disc back_carried --carry 0.5 && paint_disc back_masks --motion masks &&
-    ! cmp -s back/w_0002.png back_masks/w_0002.png &&
-    ! cmp -s back/w_0006.png back_carried/w_0006.png
+    ! same back/w_0002.png back_masks/w_0002.png &&
+    ! same back/w_0006.png back_carried/w_0006.png
 result $? 'a shape that leaves and returns is carried before and after'
-cmp -s back_carried/w_0005.png back_masks/w_0005.png
+same back_carried/w_0005.png back_masks/w_0005.png
 result $? 'what returns is painted afresh'
 paint_disc back_loop --loop --carry 1 && paint_disc back_threads --loop --carry 1 -j 3 &&
     same back_loop back_threads
@@ -113,7 +113,7 @@ at=jump_dump/red-aa3311/flow
 result $? 'the flow of a frame is the motion into it'
 
 paint crossed --paint 'crossed_paint/{region}_%04d.png' &&
-    cmp -s crossed_paint/blue-2255aa_000{1,6}.png && ! cmp -s crossed_paint/red-aa3311_000{1,6}.png
+    same crossed_paint/blue-2255aa_000{1,6}.png && ! same crossed_paint/red-aa3311_000{1,6}.png
 result $? 'a shape at rest keeps its paint while another one crosses it'
 
 echo "1..$n"

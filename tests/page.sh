@@ -39,24 +39,24 @@ result $? 'a dry run makes no style'
 page_of first && [[ $(kept) == wet-2x-* ]] && [ "$(grep -c 'simulating its paint at 2 times' err)" = 1 ] &&
     grep -q 'style, frame 3' err
 result $? 'a page that is large enough has a style made once, with progress'
-page_of second && ! grep -q 'simulating' err && cmp -s first/w_1.png second/w_1.png
+page_of second && ! grep -q 'simulating' err && same first/w_1.png second/w_1.png
 result $? 'and found again'
 rm -r cache
 page_of one & page_of two
 wait $!
-[[ $(kept) == wet-2x-* ]] && cmp -s first/w_1.png one/w_1.png && cmp -s first/w_1.png two/w_1.png
+[[ $(kept) == wet-2x-* ]] && same first/w_1.png one/w_1.png && same first/w_1.png two/w_1.png
 result $? 'two runs at once make it whole'
 rm -r cache && mkdir -p cache/fluidy-svg && : >cache/fluidy-svg/styles
-page_of nowhere && grep -q 'but not kept' err && cmp -s first/w_1.png nowhere/w_1.png
+page_of nowhere && grep -q 'but not kept' err && same first/w_1.png nowhere/w_1.png
 result $? 'where it cannot be kept it is made all the same'
 rm -r cache && mkdir -p cache/fluidy-svg
 page_of broken -q
 rm cache/fluidy-svg/styles/wet-2x-*/style.ini
-page_of mended && grep -q 'simulating' err && cmp -s first/w_1.png mended/w_1.png
+page_of mended && grep -q 'simulating' err && same first/w_1.png mended/w_1.png
 result $? 'one that is not whole is made anew'
 cp -r "$recipe" changed && sed -i 's/^seed = .*//; s/^steps = 12 16/steps = 12 18/' changed/recipe.ini
 timeout 120 "$program" page -s ./changed -W 1250 -q -o 'changed/w_%d.png' >out 2>err &&
-    [ "$(kept | wc -l)" = 2 ] && ! cmp -s first/w_1.png changed/w_1.png
+    [ "$(kept | wc -l)" = 2 ] && ! same first/w_1.png changed/w_1.png
 result $? 'another recipe is another style'
 cp -r "$recipe" slow && sed -i 's/^frames = .*/frames = 10000/; s/^steps = .*/steps = 100000/' slow/recipe.ini
 timeout 60 "$program" page -s ./slow -W 1250 -o 'slow/w_%d.png' >out 2>err && ! grep -q 'simulating' err

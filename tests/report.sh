@@ -28,8 +28,8 @@ result $? 'a page that exists stays, and nothing is painted'
 board_game() { # board_game NAME OPTION...
     "$program" "$board" -s 01 -W 500 -q --cache off -o "$1_%d.png" "${@:2}"
 }
-board_game plain && board_game seen --report board-page && cmp plain_12.png seen_12.png &&
-    cmp plain_13.png seen_13.png && cmp plain_14.png seen_14.png
+board_game plain && board_game seen --report board-page && same plain_12.png seen_12.png &&
+    same plain_13.png seen_13.png && same plain_14.png seen_14.png
 result $? 'a page changes nothing in the picture'
 
 streams() { # streams PAGE: it is written to standard output, with paint from the cache if there is any

@@ -217,13 +217,13 @@ result $? 'a film without frames that should be resumed is refused'
 result $? 'a film keeps its frames beside it'
 output=w.mkv stop on TERM 3
 [ $? = 75 ] && [ ! -e on/w.mkv ] && "$program" film -s "$style" -o on/w.mkv >out 2>err &&
-    grep -q 'resuming' err && cmp -s on/w.mkv played.mkv && rm on/w.mkv && same on whole
+    grep -q 'resuming' err && same on/w.mkv played.mkv && rm on/w.mkv && same on whole
 result $? 'an interrupted film goes on and has the same bytes'
 for frame in 1 3; do
     output=w.mkv stop dead KILL $frame
 done
 "$program" film -s "$style" -o dead/w.mkv >out 2>err && grep -q 'resuming' err &&
-    cmp -s dead/w.mkv played.mkv && rm dead/w.mkv && same dead whole
+    same dead/w.mkv played.mkv && rm dead/w.mkv && same dead whole
 result $? 'so does one that was killed twice, and leaves nothing else'
 # An ffmpeg that is slow to start, of a run that was killed, does not touch what the next one wrote.
 mkdir slow bin
@@ -232,7 +232,7 @@ printf '#!/bin/sh\ntrap "" HUP TERM\n(sleep 3; exec "%s" "$@" </dev/null) &\nwai
 chmod +x bin/ffmpeg
 PATH=$PWD/bin:$PATH output=w.mkv stop slow KILL 2
 "$program" film -s "$style" -o slow/w.mkv >out 2>err && sleep 3.5 &&
-    cmp -s slow/w.mkv played.mkv && rm slow/w.mkv && same slow whole
+    same slow/w.mkv played.mkv && rm slow/w.mkv && same slow whole
 result $? 'and a late ffmpeg of the killed run does no harm'
 mkdir one
 exec 9>one/.w.mkv.part
@@ -242,7 +242,7 @@ flock 9
 result $? 'of two runs that would write the same film the second is told'
 exec 9>&-
 "$program" film -s "$style" -o alone/w.mkv --no-frames -q >out 2>err
-[ $? = 0 ] && [ "$(ls -A alone)" = w.mkv ] && cmp -s alone/w.mkv played.mkv
+[ $? = 0 ] && [ "$(ls -A alone)" = w.mkv ] && same alone/w.mkv played.mkv
 result $? 'without frames the film is the same and alone'
 
 echo "1..$n"

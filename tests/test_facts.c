@@ -1,10 +1,14 @@
 /* A change of anything that a render is made from makes it start anew. */
+#include "io/provenance.h"
 #include "job/outputs.h"
 #include "job/plan_facts.h"
 #include "job/resume.h"
 #include "option_values.h"
 #include "scratch.h"
+#include <fcntl.h>
+#include <fluidy/render.h>
 #include <string.h>
+#include <unistd.h>
 
 /* A film of four frames that links to, and is painted with, a file of each kind. */
 typedef struct Film {
@@ -120,6 +124,15 @@ static FlPlan *plan_of(const FlRenderOptions *options)
     return plan;
 }
 
+static void write_frame(const char *path, FlDigest made_from)
+{
+    g_autofree char *mark = fl_mark_text(made_from);
+    g_assert_true(g_file_set_contents(path, mark, -1, NULL));
+    const int fd = open(path, O_RDWR | O_CLOEXEC);
+    g_assert_true(fl_mark_seal(fd, mark));
+    close(fd);
+}
+
 /* Leaves a finished render in the store, or an interrupted one in a file, without painting. */
 static void leave(const FlRenderOptions *options, bool finished)
 {
@@ -134,8 +147,9 @@ static void leave(const FlRenderOptions *options, bool finished)
     for (int f = 0; f < fl_drawing_frames(plan->drawing); f++) {
         g_autoptr(GPtrArray) files = fl_frame_files(plan, f, NULL);
         g_assert_true(fl_resume_before_files(&resume, plan, f, &error));
-        g_assert_true(g_file_set_contents(files->pdata[0], "a frame", -1, NULL));
-        g_assert_true(fl_resume_save(&resume, plan, f, &error));
+        const int number = fl_drawing_number(plan->drawing, f);
+        write_frame(files->pdata[0], fl_mark_of_frame(resume.made_from, number));
+        g_assert_true(fl_resume_save(&resume, &error));
     }
     if (finished)
         fl_resume_finish(&resume, plan);
@@ -147,6 +161,18 @@ static bool is_finished(const FlRenderOptions *options)
 {
     g_autoptr(FlPlan) plan = fl_plan_new(options, NULL);
     return plan && plan->finished == FL_FINISHED_ALL;
+}
+
+/* The same without the record and with it. */
+static bool is_verified(const FlRenderOptions *options)
+{
+    FlRenderOptions known = *options, unknown;
+    known.verify = true;
+    unknown = known;
+    unknown.cache = NULL;
+    const bool verified = fl_render(&known, NULL);
+    g_assert_true(verified == fl_render(&unknown, NULL));
+    return verified;
 }
 
 static bool is_resumed(const FlRenderOptions *options)
@@ -232,9 +258,9 @@ static void a_change_of_any_file_starts_the_render_anew(void)
         g_assert_true(is_resumed(&options));
         g_unlink(film.state);
         leave(&options, true);
-        g_assert_true(is_finished(&options));
+        g_assert_true(is_finished(&options) && is_verified(&options));
         change(path);
-        if (is_finished(&options))
+        if (is_finished(&options) || is_verified(&options))
             g_error("has nothing to do although %s has changed", files[k]);
         g_assert_true(g_file_set_contents(path, saved, (gssize)bytes, NULL));
         g_assert_true(is_finished(&options));
@@ -296,7 +322,7 @@ static void check_option(const FlOption *o, GPtrArray *strings)
         return;
     if (!is_of_film(o) && plan->finished == FL_FINISHED_ALL)
         g_error("has nothing to do although %s is %s", o->name, value);
-    if (plan->format->film || strcmp(o->name, "part") == 0)
+    if (plan->format->film || is_of_film(o))
         return; // another output, which has no record
     if (is_resumed(&options))
         g_error("resumes although %s is %s", o->name, value);

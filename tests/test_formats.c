@@ -1,7 +1,9 @@
 #include "base/density.h"
 #include "base/rng.h"
 #include "config.h"
+#include "io/pattern.h"
 #include "io/png.h"
+#include "io/provenance.h"
 #include "io/sink.h"
 
 #include <gio/gio.h>
@@ -78,6 +80,26 @@ static bool write_film(const char *path, bool opaque, GError **error)
             return false;
     }
     return sink && fl_sink_finish(sink, error);
+}
+
+/** Every byte of a file that is changed, and every length, is seen by its mark. */
+static void check_mark(const char *path, FlDigest made_from, int step)
+{
+    g_autofree char *data = NULL;
+    gsize bytes;
+    FlDigest found = {0};
+    g_assert_true(fl_mark_is(path, made_from));
+    g_assert_true(g_file_get_contents(path, &data, &bytes, NULL));
+    for (gsize k = 0; k < bytes; k += (gsize)step) {
+        data[k] ^= 16;
+        g_assert_true(g_file_set_contents(path, data, (gssize)bytes, NULL));
+        data[k] ^= 16;
+        const FlMark mark = fl_mark_read(path, &found);
+        if (mark == FL_MARK_WHOLE && fl_digest_is_same(found, made_from))
+            g_error("%s: byte %zu of %zu was changed unseen", path, k, bytes);
+        g_assert_true(g_file_set_contents(path, data, (gssize)k, NULL));
+        g_assert_false(fl_mark_is(path, made_from));
+    }
 }
 
 /** What ffprobe says of the first stream: "key=value" lines; to be freed. */
@@ -293,8 +315,13 @@ static bool write_noise(const char *path, const FlSinkFormat *format, GError **e
     for (int i = 0; i < 4 * SIDE * SIDE; i++)
         rgba[i] = i % 4 == 3 ? 255 : (uint8_t)fl_rng_u32(&rng),
         rgba16[i] = (uint16_t)(rgba[i] * 257);
-    const FlSinkParams params = {
-        .path = path, .width = SIDE, .height = SIDE, .fps = 25, .opaque = true};
+    const FlDigest made_from = {7, 9};
+    const FlSinkParams params = {.path = path,
+                                 .made_from = made_from,
+                                 .width = SIDE,
+                                 .height = SIDE,
+                                 .fps = 25,
+                                 .opaque = true};
     const FlSinkLayer layer = {"all", 0, 0, SIDE, SIDE, rgba};
     g_autoptr(FlSink) sink = fl_sink_open(format, &params, error);
     for (int k = 0; sink && k < 8; k++) {
@@ -304,6 +331,35 @@ static bool write_noise(const char *path, const FlSinkFormat *format, GError **e
             return false;
     }
     return sink && fl_sink_finish(sink, error);
+}
+
+static bool has_mark(const FlSinkFormat *format)
+{
+    return strcmp(format->name, "null") != 0 && strcmp(format->name, "hash") != 0;
+}
+
+static void files_of_all_formats_know_when_they_were_changed(void)
+{
+    enum { STEP = 997 };
+    if (lacks("ffmpeg"))
+        return;
+    for (const FlSinkFormat *const *format = fl_sink_formats(); *format; format++) {
+        g_autoptr(GError) error = NULL;
+        g_auto(Scratch) scratch = scratch_new();
+        g_autofree char *name = g_strdup_printf("a%s%s", (*format)->film ? "" : "_%02d",
+                                                (*format)->suffix ? (*format)->suffix : "");
+        g_autofree char *pattern = g_build_filename(scratch.folder, name, NULL);
+        g_autofree char *path = fl_output_name(pattern, 3, NULL, NULL);
+        if (!has_mark(*format))
+            continue;
+        g_test_message("%s", (*format)->name);
+        g_assert_true(write_noise(pattern, *format, &error));
+        const FlDigest of_film = {7, 9};
+        if ((*format)->film)
+            check_mark(pattern, of_film, STEP);
+        else
+            check_mark(path, fl_mark_of_frame(of_film, 3), STEP);
+    }
 }
 
 static void a_full_disk_is_an_error_and_leaves_no_litter(void)
@@ -546,6 +602,8 @@ int main(int argc, char **argv)
     g_test_add_func("/formats/an-existing-film-is-kept", an_existing_film_is_kept);
     g_test_add_func("/formats/a-full-disk-is-an-error-and-leaves-no-litter",
                     a_full_disk_is_an_error_and_leaves_no_litter);
+    g_test_add_func("/formats/files-of-all-formats-know-when-they-were-changed",
+                    files_of_all_formats_know_when_they_were_changed);
     g_test_add_func("/formats/sums-are-a-line-per-frame", sums_are_a_line_per_frame);
 #if HAVE_EXR
     g_test_add_func("/formats/an-exr-holds-linear-premultiplied-layers",

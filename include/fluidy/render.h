@@ -209,8 +209,13 @@ typedef struct FlRenderOptions {
     bool watch;   /**< it is rendered again and again: an interrupted render leaves no state, since
                        its paint is in the cache. The program's loop is not part of fl_render() */
     bool dry_run; /**< check everything and estimate the time, without writing files */
-    int threads;  /**< 0: one per processor. The output bytes are the same for every number of
-                     threads */
+    /** Paint nothing, and tell which files are as they would be made now: frames, layers, paint and
+     *  film carry a digest of the drawings, fonts, styles, settings and versions that they were
+     * made from, and one of themselves. Each file that differs is a note, and together they are
+     *  FL_ERROR_CHANGED. Lists of sums carry none. */
+    bool verify;
+    int threads; /**< 0: one per processor. The output bytes are the same for every number of
+                    threads */
     /** Called after every frame of a stage, now and then while frames are read, from the calling
      * thread; false stops the render with FL_ERROR_INTERRUPTED. NULL: no progress is reported. */
     bool (*progress)(const FlProgress *progress, void *data);

@@ -2,6 +2,7 @@
 
 #include "base/exists.h"
 #include "io/lock.h"
+#include "io/provenance.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -51,7 +52,7 @@ static int open_nameless(const char *path)
 {
 #ifdef O_TMPFILE
     g_autofree char *folder = g_path_get_dirname(path);
-    const int fd = open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, MODE);
+    const int fd = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, MODE);
     if (fd >= 0)
         (void)flock(fd, LOCK_EX | LOCK_NB); // before it gets its hidden name
     return fd;
@@ -190,6 +191,14 @@ bool fl_atomic_commit(FlAtomicFile *file, GError **error)
     g_autofree char *folder = g_path_get_dirname(file->path);
     sync_path(folder, O_RDONLY | O_DIRECTORY); // makes the name durable; not every system can
     return true;
+}
+
+bool fl_atomic_seal(FlAtomicFile *file, const char *mark, GError **error)
+{
+    if (fflush(file->stream) == 0 && fl_mark_seal(fileno(file->stream), mark))
+        return fl_atomic_commit(file, error);
+    fl_output_error(error, file->path, errno);
+    return false;
 }
 
 void fl_atomic_clear(FlAtomicFile *file)

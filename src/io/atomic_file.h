@@ -41,6 +41,9 @@ bool fl_atomic_reserve(FlAtomicFile *file, const char *path, bool overwrite, GEr
  */
 bool fl_atomic_commit(FlAtomicFile *file, GError **error);
 
+/** The same once the file's mark is completed: fl_mark_seal(). */
+bool fl_atomic_seal(FlAtomicFile *file, const char *mark, GError **error);
+
 /** Closes the file; without a commit it is removed. */
 void fl_atomic_clear(FlAtomicFile *file);
 

@@ -6,6 +6,7 @@
 #include "base/schedule.h"
 #include "io/atomic_file.h"
 #include "io/formats.h"
+#include "io/provenance.h"
 
 #include <OpenEXR/openexr.h>
 #include <libdeflate.h>
@@ -21,6 +22,7 @@ typedef FlSinkLayer Layer;
 typedef struct Writer {
     exr_context_t context;
     exr_result_t result; // the first failure
+    const char *mark;    // or NULL
     int width, height;
     int chunk_rows;
     const Layer **layer; // of each channel, in the file's order
@@ -107,7 +109,9 @@ static bool put_header(Writer *writer, const Layer *whole, const FlSinkFrame *fr
                                                           writer->height, EXR_COMPRESSION_ZIP)) ||
         !went(writer,
               exr_attr_set_chromaticities(writer->context, 0, "chromaticities", &rec_709)) ||
-        !add_layer_channels(writer, whole))
+        !add_layer_channels(writer, whole) ||
+        (writer->mark &&
+         !went(writer, exr_attr_set_string(writer->context, 0, FL_MARK_KEY, writer->mark))))
         return false;
     for (int k = 0; k < frame->n_layers; k++)
         if (!add_layer_channels(writer, &frame->layers[k]))
@@ -301,7 +305,8 @@ static bool exr_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
     const FlSinkParams *params = &sink->params;
     g_autofree char *path = fl_sink_file(params, frame->number, error);
     g_auto(FlAtomicFile) file = {0};
-    Writer writer = {.width = params->width, .height = params->height};
+    g_autofree char *mark = fl_sink_mark(sink, frame->number);
+    Writer writer = {.mark = mark, .width = params->width, .height = params->height};
     GError *problem = NULL;
     if (!path || !fl_atomic_open(&file, path, params->overwrite, error))
         return false;
@@ -310,7 +315,7 @@ static bool exr_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
     g_free(writer.layer);
     g_free(writer.component);
     if (put)
-        return fl_atomic_commit(&file, error);
+        return fl_atomic_seal(&file, mark, error);
     if (problem)
         g_propagate_prefixed_error(error, problem, "%s: ", path);
     else

@@ -209,6 +209,12 @@ static bool add_parts(Archive *archive, const FlSinkParams *params, GHashTable *
            add_png(archive, "mergedimage.png", &merged);
 }
 
+/** The mark is the comment of the archive. */
+static bool archive_mark(Archive *archive, const char *mark)
+{
+    return !mark || zip_set_archive_comment(archive->zip, mark, (zip_uint16_t)strlen(mark)) == 0;
+}
+
 /** Completes the archive and writes it to the stream. */
 static bool archive_store(Archive *archive, FILE *stream)
 {
@@ -241,15 +247,16 @@ static bool ora_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
 {
     g_autofree char *path = fl_sink_file(&sink->params, frame->number, error);
     g_auto(FlAtomicFile) file = {0};
+    g_autofree char *mark = fl_sink_mark(sink, frame->number);
     Archive archive = {0};
     if (!path || !fl_atomic_open(&file, path, sink->params.overwrite, error))
         return false;
     const bool put = archive_open(&archive) &&
                      add_parts(&archive, &sink->params, sink->state, frame) &&
-                     archive_store(&archive, file.stream);
+                     archive_mark(&archive, mark) && archive_store(&archive, file.stream);
     archive_clear(&archive);
     if (put)
-        return fl_atomic_commit(&file, error);
+        return fl_atomic_seal(&file, mark, error);
     g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
                 "the archive could not be made; is the disk full?");
     return false;

@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/file.h"
 #include "io/atomic_file.h"
+#include "io/provenance.h"
 
 #include <errno.h>
 #include <libdeflate.h>
@@ -54,6 +55,7 @@ static void put_header(png_structp png, png_infop info, const FlPng *picture)
     if (picture->place)
         png_set_oFFs(png, info, picture->place->x, picture->place->y, PNG_OFFSET_PIXEL);
     put_text(png, info, picture->text);
+    put_text(png, info, (const char *const[]){FL_MARK_KEY, picture->mark, NULL});
     png_write_info(png, info);
 }
 
@@ -227,7 +229,7 @@ bool fl_png_save(const FlPng *picture, const char *path, bool overwrite, GError 
     Target target = {.stream = file.stream};
     errno = 0;
     if (encode(picture, &target, &trouble))
-        return fl_atomic_commit(&file, error);
+        return fl_atomic_seal(&file, picture->mark, error);
     g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
                 errno ? g_strerror(errno) : trouble.message);
     return false;

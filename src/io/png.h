@@ -17,6 +17,7 @@ typedef struct FlPng {
     bool fast;               // deflate at level 1 instead of 4
     const FlRect *place;     // its place in a larger picture, from 0; may be NULL
     const char *const *text; // keyword, text, …, NULL; or NULL
+    const char *mark;        // see fl_mark_text(); of files only; or NULL
 } FlPng;
 
 /**

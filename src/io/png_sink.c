@@ -5,6 +5,7 @@
 static bool png_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
 {
     g_autofree char *path = fl_sink_file(&sink->params, frame->number, error);
+    g_autofree char *mark = fl_sink_mark(sink, frame->number);
     const bool deep = sink->format->takes_16;
     const FlPng png = {
         .width = sink->params.width,
@@ -13,7 +14,7 @@ static bool png_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
         .rgba16 = deep ? frame->rgba16 : NULL,
         .opaque = sink->params.opaque,
         .fast = sink->params.fast,
-        .text = frame->text,
+        .mark = mark,
     };
     return path && fl_png_save(&png, path, sink->params.overwrite, error);
 }

@@ -1,9 +1,17 @@
 #include "io/sink.h"
 #include "io/pattern.h"
+#include "io/provenance.h"
 
 char *fl_sink_file(const FlSinkParams *params, int number, GError **error)
 {
     return fl_output_name(params->path, number, NULL, error);
+}
+
+char *fl_sink_mark(const FlSink *sink, int number)
+{
+    const FlDigest made_from = sink->params.made_from;
+    const bool of_frame = !sink->format->film && fl_digest_is_known(made_from);
+    return fl_mark_text(of_frame ? fl_mark_of_frame(made_from, number) : made_from);
 }
 
 /** A pattern's mistakes show up before any frame is painted. */

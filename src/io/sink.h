@@ -2,6 +2,7 @@
 #ifndef FLUIDY_IO_SINK_H
 #define FLUIDY_IO_SINK_H
 
+#include "base/digest.h"
 #include "base/pixel_runs.h"
 #include "io/child_process.h"
 #include <fluidy/error.h>
@@ -27,7 +28,6 @@ typedef struct FlSinkFrame {
     const uint16_t *rgba16;    // the same with 16 bits, if the format takes_16; else NULL
     const FlSinkLayer *layers; // bottom first, if the format takes_layers; else NULL
     int n_layers;
-    const char *const *text; // keyword, text, …, NULL: metadata, if supported; or NULL
 } FlSinkFrame;
 
 /** Gets a frame of width * height pixels. Returns: false with the error set ends the render. */
@@ -43,6 +43,7 @@ typedef struct FlFrameTaker {
 /** The parameters of all frames of a sink. */
 typedef struct FlSinkParams {
     const char *path;    // a pattern for picture formats, a file for films
+    FlDigest made_from;  // of all frames, or of the film; not known: files have no marks
     int width, height;   // pixels, >= 1
     double fps;          // films only, > 0
     bool opaque;         // no frame has alpha below 255
@@ -97,6 +98,9 @@ bool fl_sink_finish(FlSink *sink, GError **error);
 
 /** Frees the sink; an unfinished film is gone, finished pictures stay. NULL is fine. */
 void fl_sink_free(FlSink *sink);
+
+/** The mark of a frame of this number, or of the film: to be freed; may be NULL. */
+char *fl_sink_mark(const FlSink *sink, int number);
 
 /** The file that a frame of this number goes to: to be freed; NULL with FL_ERROR_USAGE set. */
 char *fl_sink_file(const FlSinkParams *params, int number, GError **error);

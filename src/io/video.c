@@ -28,6 +28,9 @@ typedef struct VideoState {
     "[0:v]split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1:dither=sierra2_"   \
     "4a "
 
+/* Without sums of the container, since the mark in it is completed afterwards; slices have sums. */
+#define FFV1 "-c:v ffv1 -level 3 -g 1 -slicecrc 1 -write_crc32 0 -pix_fmt "
+
 static const Codec codecs[] = {
     {&fl_sink_mov, "mov",
      "-c:v prores_ks -profile:v 4444 -alpha_bits 16 -vendor apl0 -pix_fmt yuva444p10le",
@@ -35,8 +38,7 @@ static const Codec codecs[] = {
     {&fl_sink_webm, "webm",
      "-c:v libvpx-vp9 -crf 18 -b:v 0 -row-mt 1 -auto-alt-ref 0 -pix_fmt yuva420p",
      "-c:v libvpx-vp9 -crf 18 -b:v 0 -row-mt 1 -pix_fmt yuv420p", true},
-    {&fl_sink_mkv, "matroska", "-c:v ffv1 -level 3 -g 1 -slicecrc 1 -pix_fmt bgra",
-     "-c:v ffv1 -level 3 -g 1 -slicecrc 1 -pix_fmt bgr0", false},
+    {&fl_sink_mkv, "matroska", FFV1 "bgra", FFV1 "bgr0", false},
     {&fl_sink_mp4, "mp4", NULL,
      "-c:v libx264 -crf 16 -preset medium -movflags +faststart -pix_fmt yuv420p", true},
     {&fl_sink_gif, "gif", PALETTE "-loop 0", PALETTE "-loop 0", false},
@@ -98,10 +100,15 @@ static void add_colour(GPtrArray *arguments, const Codec *codec)
 static FlChild *start_ffmpeg(const FlSink *sink, const FlAtomicFile *file, GError **error)
 {
     const Codec *codec = codec_of(sink->format);
+    g_autofree char *mark = fl_sink_mark(sink, 0);
     g_autoptr(GPtrArray) arguments = g_ptr_array_new_with_free_func(g_free);
     add_input(arguments, &sink->params);
     add_words(arguments, sink->params.opaque ? codec->without_alpha : codec->with_alpha);
     add_colour(arguments, codec);
+    if (mark) {
+        add_words(arguments, "-metadata");
+        g_ptr_array_add(arguments, g_strconcat("comment=", mark, NULL));
+    }
     add_words(arguments, "-f");
     g_ptr_array_add(arguments, g_strdup(codec->muxer));
     add_words(arguments, "file:" FL_CHILD_FILE);
@@ -162,7 +169,8 @@ static bool video_finish(FlSink *sink, GError **error)
         g_prefix_error(error, "%s: ", sink->params.path);
         return false;
     }
-    return fl_atomic_commit(&state->file, error);
+    g_autofree char *mark = fl_sink_mark(sink, 0);
+    return fl_atomic_seal(&state->file, mark, error);
 }
 
 static void video_clear(FlSink *sink)

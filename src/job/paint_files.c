@@ -65,7 +65,7 @@ static void load_anchor(const char *path, FlAnchor *anchor)
 }
 
 bool fl_paint_file_save(const FlPaintedRegion *painted, FlPaintArea area, const char *path,
-                        bool overwrite, GError **error)
+                        const char *mark, bool overwrite, GError **error)
 {
     const FlRect part = area_of(painted, area), rect = painted->rect;
     const size_t pixels = fl_rect_pixels(part);
@@ -90,7 +90,8 @@ bool fl_paint_file_save(const FlPaintedRegion *painted, FlPaintArea area, const 
                        .opaque = !look.region.alpha,
                        .fast = area == FL_PAINT_AREA_REGION, // the merge is its only reader
                        .place = area == FL_PAINT_AREA_REGION ? &part : NULL,
-                       .text = text};
+                       .text = text,
+                       .mark = mark};
     return fl_png_save(&png, path, overwrite, error);
 }
 

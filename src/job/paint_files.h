@@ -17,10 +17,10 @@ char *fl_paint_file_name(const char *pattern, const FlDrawing *drawing, const Fl
 
 /**
  * Writes the paint of a region, in the exemplar's colours, as PNG: as large as the frame, or as
- * painted->rect, with its place.
+ * painted->rect, with its place. mark: see fl_mark_text().
  */
 bool fl_paint_file_save(const FlPaintedRegion *painted, FlPaintArea area, const char *path,
-                        bool overwrite, GError **error);
+                        const char *mark, bool overwrite, GError **error);
 
 /** Sets region->place if the file of its paint in the first frame exists and has a place. */
 void fl_paint_file_find_place(const FlDrawing *drawing, FlRegionPlan *region);

@@ -47,6 +47,7 @@ typedef struct FlPlan {
     bool rasterised;          // the masks are there
     FlDigest reading;         // of what decides the drawing
     FlDigest request;         // of what was asked for, before anything of it is read
+    FlDigest made_from;       // of all that decides the frames, if it is known before reading
     FlFinished finished;      // ALL: the rest of the plan is not made
     int n_finished;           // frames of what is finished
     gint64 start;             // microseconds, as g_get_monotonic_time()

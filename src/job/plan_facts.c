@@ -26,6 +26,12 @@ static int by_name(const void *a, const void *b)
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
+static bool frames_share_a_file(const FlDrawing *drawing)
+{
+    return fl_drawing_frames(drawing) > 1 &&
+           g_str_equal(fl_drawing_file(drawing, 0), fl_drawing_file(drawing, 1));
+}
+
 /* The files of the frames, and those that they refer to. */
 static void add_drawings(FlFacts *facts, const FlPlan *plan)
 {
@@ -39,6 +45,8 @@ static void add_drawings(FlFacts *facts, const FlPlan *plan)
     qsort(linked, n, sizeof *linked, by_name);
     for (guint k = 0; k < n; k++)
         add_file(facts, plan->inputs, linked[k]);
+    if (frames_share_a_file(drawing)) // they may be moments of it
+        fl_facts_add_number(facts, "fps", plan->options.fps);
 }
 
 /* The files of an option that may name one for each frame; what is missing is told when it is
@@ -47,7 +55,7 @@ static void add_pattern(FlFacts *facts, const FlPlan *plan, const char *pattern,
 {
     const bool each = fl_input_is_pattern(pattern);
     FlDigest sum = {0};
-    for (int f = each ? plan->first : 0; f < (each ? plan->end : 1); f++) {
+    for (int f = 0; f < (each ? fl_drawing_frames(plan->drawing) : 1); f++) {
         g_autofree char *file =
             each ? fl_output_name(pattern, fl_drawing_number(plan->drawing, f), region, NULL)
                  : g_strdup(pattern);
@@ -160,6 +168,14 @@ FlFacts *fl_plan_facts(const FlPlan *plan)
     return facts;
 }
 
+FlDigest fl_film_digest(const FlPlan *plan, FlDigest made_from)
+{
+    FlDigest digest = made_from;
+    fl_digest_add_text(&digest, (plan->movie ? plan->movie_format : plan->format)->name);
+    fl_digest_add(&digest, &plan->options.fps, sizeof plan->options.fps);
+    return digest;
+}
+
 /* ---- the paint of one region ---------------------------------------------------------------- */
 
 /* The build id stands for the code of the method. */
@@ -196,12 +212,6 @@ FlFacts *fl_region_facts(const FlShapes *shapes, const FlRegionPlan *region, FlI
     return facts;
 }
 
-static bool frames_share_a_file(const FlDrawing *drawing)
-{
-    return fl_drawing_frames(drawing) > 1 &&
-           g_str_equal(fl_drawing_file(drawing, 0), fl_drawing_file(drawing, 1));
-}
-
 void fl_region_facts_add_film(FlFacts *facts, const FlPlan *plan, int p)
 {
     const FlRegionPlan *painted = &plan->painted[p];
@@ -209,8 +219,6 @@ void fl_region_facts_add_film(FlFacts *facts, const FlPlan *plan, int p)
     for (int f = 0; f < fl_drawing_frames(plan->drawing); f++) // by which layers of one file differ
         fl_facts_add_number(facts, "the number of a frame", fl_drawing_number(plan->drawing, f));
     add_values(facts, FL_SCOPE_RENDER, &plan->options, NULL, false);
-    if (frames_share_a_file(plan->drawing)) // they may be moments of it
-        fl_facts_add_number(facts, "fps", plan->options.fps);
     fl_facts_add_number(facts, "the hold", plan->hold);
     add_edges(facts, plan);
     for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)

@@ -11,6 +11,9 @@
  * freed. */
 FlFacts *fl_plan_facts(const FlPlan *plan);
 
+/** The digest of all that decides a film: what decides its frames, its format and speed. */
+FlDigest fl_film_digest(const FlPlan *plan, FlDigest made_from);
+
 /**
  * Adds every option of the table that decides frames, by its value. object: FlRenderOptions with
  * the config's filled in, or the FlRegionSettings of `region`.

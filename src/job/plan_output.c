@@ -130,5 +130,5 @@ bool fl_plan_find_output(FlPlan *plan, GError **error)
     plan->finished = is_of_film(o->part) ? FL_FINISHED_FRAMES : fl_resume_look(plan, sequence);
     plan->n_finished = plan->finished != FL_FINISHED_NOTHING ? sequence->n : 0;
     return plan->finished == FL_FINISHED_ALL ||
-           (plan->options.dry_run || fl_resume_expect_free(plan, sequence, error));
+           (o->dry_run || o->verify || fl_resume_expect_free(plan, sequence, error));
 }

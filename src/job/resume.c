@@ -1,8 +1,10 @@
 #include "job/resume.h"
 
 #include "base/exists.h"
+#include "drawing/open_drawing.h"
 #include "io/lock.h"
 #include "io/pattern.h"
+#include "io/provenance.h"
 #include "job/outputs.h"
 #include "job/plan_facts.h"
 #include "style/style_folder.h"
@@ -72,30 +74,9 @@ static bool frame_is_free(const FlPlan *plan, const char *file, GError **error)
     return false;
 }
 
-/* The digest of a frame's files; zero if one is missing. */
-static FlDigest digest_of(const GPtrArray *files)
-{
-    FlDigest digest = {0};
-    for (guint k = 0; k < files->len; k++) {
-        const FlDigest file = fl_file_digest(files->pdata[k]);
-        if (!g_file_test(files->pdata[k], G_FILE_TEST_IS_REGULAR))
-            return (FlDigest){0};
-        fl_digest_add(&digest, &file, sizeof file);
-    }
-    return digest;
-}
-
-static bool is_recorded(const GArray *frames, int frame, FlDigest digest)
-{
-    const FlDigest none = {0};
-    const FlDigest *known =
-        (guint)frame < frames->len ? &g_array_index(frames, FlDigest, frame) : &none;
-    return known->a == digest.a && known->b == digest.b;
-}
-
 static bool refuse_frame(const FlPlan *plan, const char *file, const char *but, GError **error)
 {
-    if (plan->options.part)
+    if (plan->options.part && !g_file_test(file, G_FILE_TEST_EXISTS))
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
                     "%s: there is no such frame; ‘merge’ its ‘part’ first", file);
     else
@@ -105,17 +86,21 @@ static bool refuse_frame(const FlPlan *plan, const char *file, const char *but, 
     return false;
 }
 
-/* The files of a finished frame are as they were written, if that is known; else they exist. */
+/* The files of a finished frame exist and are as they were written; those of others, which were
+ * kept, only exist. */
 static bool is_finished(const FlResume *resume, const FlPlan *plan, int frame,
                         const GPtrArray *files, GError **error)
 {
-    const bool unknown = is_recorded(resume->record->frames, frame, (FlDigest){0});
-    const guint n = unknown ? fl_frame_has_picture(plan) : files->len;
-    for (guint k = 0; k < n; k++)
-        if (!g_file_test(files->pdata[k], G_FILE_TEST_EXISTS))
-            return refuse_frame(plan, files->pdata[k], "it is gone", error);
-    return unknown || is_recorded(resume->record->frames, frame, digest_of(files)) ||
-           refuse_frame(plan, files->pdata[0], "it has changed since", error);
+    const int number = fl_drawing_number(plan->drawing, frame);
+    const FlDigest made_from = fl_mark_of_frame(resume->made_from, number);
+    for (guint k = 0; k < files->len; k++) {
+        const char *file = files->pdata[k];
+        if (!g_file_test(file, G_FILE_TEST_EXISTS))
+            return refuse_frame(plan, file, "it is gone", error);
+        if (!resume->keep_files && !fl_mark_is(file, made_from))
+            return refuse_frame(plan, file, "it has changed since", error);
+    }
+    return true;
 }
 
 /* Files of a finished frame must exist; files of other frames must not, unless they are ours. */
@@ -210,6 +195,7 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
         fl_facts_free(resume->record->facts);
         resume->record->facts = g_steal_pointer(&facts);
     }
+    resume->made_from = fl_facts_digest(resume->record->facts);
     resume->first = plan->finished == FL_FINISHED_FRAMES
                         ? plan->end
                         : CLAMP(resume->record->done, plan->first, plan->end);
@@ -279,15 +265,8 @@ bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GEr
     return resume->written = fl_record_save(resume->record, resume->path, error);
 }
 
-bool fl_resume_save(FlResume *resume, const FlPlan *plan, int frame, GError **error)
+bool fl_resume_save(const FlResume *resume, GError **error)
 {
-    GArray *frames = resume->record->frames;
-    g_autoptr(GPtrArray) files = fl_frame_files(plan, frame, error);
-    if (!files)
-        return false;
-    g_array_set_size(frames, MAX(frames->len, (guint)frame + 1));
-    if (!resume->keep_files) // a file that was kept may be anything
-        g_array_index(frames, FlDigest, frame) = digest_of(files);
     return !resume->path || fl_record_save(resume->record, resume->path, error);
 }
 
@@ -353,24 +332,6 @@ static const char *film_of(const FlPlan *plan)
     return plan->format->film ? plan->output : plan->movie;
 }
 
-/* Path, format and speed of the film, which decide its bytes together with the frames. */
-static char *film_key(const FlPlan *plan)
-{
-    char rate[G_ASCII_DTOSTR_BUF_SIZE];
-    const FlSinkFormat *format = plan->movie ? plan->movie_format : plan->format;
-    return g_strdup_printf("%s %s %s", film_of(plan), format->name,
-                           g_ascii_dtostr(rate, sizeof rate, plan->options.fps));
-}
-
-static FlFacts *film_facts(const FlPlan *plan)
-{
-    FlFacts *facts = fl_facts_new();
-    g_autofree char *key = film_of(plan) ? film_key(plan) : NULL;
-    if (key)
-        fl_facts_add_digest(facts, key, fl_file_digest(film_of(plan)));
-    return facts;
-}
-
 static bool same_facts(const FlFacts *before, FlFacts *now)
 {
     g_autofree char *difference = fl_facts_difference(before, now);
@@ -401,15 +362,12 @@ static FlFacts *found_now(const FlFacts *before)
     return now;
 }
 
-static bool frames_are_there(const FlPlan *plan, const FlSequence *sequence, const FlRecord *record)
+static bool frames_are_there(const FlPlan *plan, const FlSequence *sequence, FlDigest made_from)
 {
     bool there = true;
     for (int f = 0; f < sequence->n && !plan->format->film && there; f++) {
-        g_autoptr(GPtrArray) files = g_ptr_array_new_with_free_func(g_free);
-        char *file = fl_output_name(plan->output, sequence->number[f], NULL, NULL);
-        g_ptr_array_add(files, file);
-        there = file && g_file_test(file, G_FILE_TEST_EXISTS) &&
-                is_recorded(record->frames, f, digest_of(files));
+        g_autofree char *file = fl_output_name(plan->output, sequence->number[f], NULL, NULL);
+        there = file && fl_mark_is(file, fl_mark_of_frame(made_from, sequence->number[f]));
     }
     return there;
 }
@@ -418,8 +376,8 @@ static bool frames_are_there(const FlPlan *plan, const FlSequence *sequence, con
 static bool keeps_all(const FlPlan *plan, const FlSequence *sequence)
 {
     const FlRenderOptions *o = &plan->options;
-    if (o->overwrite != FL_OVERWRITE_KEEP || film_of(plan) || plan->parts_only || o->layers ||
-        o->paint || o->stats || o->report || o->dump || o->ebsynth)
+    if (o->overwrite != FL_OVERWRITE_KEEP || o->verify || film_of(plan) || plan->parts_only ||
+        o->layers || o->paint || o->stats || o->report || o->dump || o->ebsynth)
         return false;
     // frames that are found to be left out would move the bounds of parts
     if (plan->n_parts > 1 && o->missing > FL_MISSING_ERROR)
@@ -444,7 +402,7 @@ static void tell_inputs(const FlPlan *plan, const FlRecord *record)
     }
 }
 
-FlFinished fl_resume_look(const FlPlan *plan, const FlSequence *sequence)
+FlFinished fl_resume_look(FlPlan *plan, const FlSequence *sequence)
 {
     if (keeps_all(plan, sequence))
         return FL_FINISHED_ALL;
@@ -453,16 +411,18 @@ FlFinished fl_resume_look(const FlPlan *plan, const FlSequence *sequence)
     g_autoptr(FlRecord) record = bytes ? fl_record_parse(bytes) : NULL;
     if (!record || record->request.a != plan->request.a || record->request.b != plan->request.b ||
         !same_facts(record->found, found_now(record->found)) ||
-        !same_facts(record->inputs, inputs_now(record->inputs)) ||
-        !frames_are_there(plan, sequence, record))
+        !same_facts(record->inputs, inputs_now(record->inputs)))
+        return FL_FINISHED_NOTHING;
+    plan->made_from = fl_facts_digest(record->facts);
+    if (!frames_are_there(plan, sequence, plan->made_from))
         return FL_FINISHED_NOTHING;
     tell_inputs(plan, record);
-    if (!film_of(plan) || same_facts(record->films, film_facts(plan)))
+    if (!film_of(plan) || fl_mark_is(film_of(plan), fl_film_digest(plan, plan->made_from)))
         return FL_FINISHED_ALL;
     return plan->format->film ? FL_FINISHED_NOTHING : FL_FINISHED_FRAMES;
 }
 
-/* Adds the digests of all that was read, and of the film. */
+/* Adds the digests of all that was read. */
 static void complete_record(FlRecord *record, const FlPlan *plan)
 {
     record->request = plan->request;
@@ -476,33 +436,110 @@ static void complete_record(FlRecord *record, const FlPlan *plan)
         if (region->tile)
             fl_facts_add(record->found, region->settings.tile, region->tile->path);
     }
-    fl_facts_free(record->films);
-    record->films = film_facts(plan);
-}
-
-/* Frames that an earlier run has finished, of which only the film was made now. */
-static bool record_frames(FlRecord *record, const FlPlan *plan)
-{
-    const int n = plan->format->film ? 0 : fl_drawing_frames(plan->drawing);
-    g_array_set_size(record->frames, (guint)n);
-    for (int f = 0; f < n; f++) {
-        FlDigest *known = &g_array_index(record->frames, FlDigest, f);
-        g_autoptr(GPtrArray) files = fl_frame_files(plan, f, NULL);
-        if (files && !fl_digest_is_known(*known))
-            *known = digest_of(files);
-        if (!fl_digest_is_known(*known))
-            return false;
-    }
-    return true;
 }
 
 void fl_resume_finish(FlResume *resume, const FlPlan *plan)
 {
     FlStore *store = store_for(plan);
     remove_record(resume);
-    if (!store || resume->keep_files || !record_frames(resume->record, plan) ||
-        (film_of(plan) && !g_file_test(film_of(plan), G_FILE_TEST_IS_REGULAR)))
+    if (!store || resume->keep_files)
         return;
     complete_record(resume->record, plan);
     fl_record_keep(resume->record, store, name_of(plan));
+}
+
+/* ---- verifying ------------------------------------------------------------------------------- */
+
+typedef struct Verify {
+    const FlPlan *plan;
+    int n, n_wrong;
+} Verify;
+
+static void note(const FlPlan *plan, char *line)
+{
+    if (plan->options.note)
+        plan->options.note(line, plan->options.data);
+    g_free(line);
+}
+
+static void verify_file(Verify *verify, const char *file, FlDigest made_from)
+{
+    FlDigest found = {0};
+    const char *fault = NULL;
+    switch (fl_mark_read(file, &found)) {
+    case FL_MARK_MISSING:
+        fault = "is missing";
+        break;
+    case FL_MARK_NONE:
+        fault = "does not say what it was made from";
+        break;
+    case FL_MARK_ALTERED:
+        fault = "has changed since it was written";
+        break;
+    case FL_MARK_WHOLE:
+        fault = fl_digest_is_same(found, made_from) ? NULL : "was made from something else";
+        break;
+    }
+    verify->n++, verify->n_wrong += fault != NULL;
+    if (fault)
+        note(verify->plan, g_strdup_printf("%s: %s", file, fault));
+}
+
+/* The frames by their names alone, where no drawing was read. */
+static bool verify_frames(Verify *verify, GError **error)
+{
+    const FlPlan *plan = verify->plan;
+    g_autoptr(FlSequence) sequence = fl_sequence_from_options(&plan->options, error);
+    for (int f = 0; sequence && f < sequence->n && !plan->format->film; f++) {
+        const int number = sequence->number[f];
+        g_autofree char *file = fl_output_name(plan->output, number, NULL, error);
+        if (!file)
+            return false;
+        verify_file(verify, file, fl_mark_of_frame(plan->made_from, number));
+    }
+    return sequence != NULL;
+}
+
+static bool verify_all_files(Verify *verify, FlDigest made_from, GError **error)
+{
+    const FlPlan *plan = verify->plan;
+    for (int f = plan->first; f < plan->end; f++) {
+        const int number = fl_drawing_number(plan->drawing, f);
+        g_autoptr(GPtrArray) files = fl_frame_files(plan, f, error);
+        for (guint k = 0; files && k < files->len; k++)
+            verify_file(verify, files->pdata[k], fl_mark_of_frame(made_from, number));
+        if (!files)
+            return false;
+    }
+    return true;
+}
+
+/* Tells how the last render of these files, which the store knows, differs from this one. */
+static void note_cause(const FlPlan *plan, const FlFacts *facts)
+{
+    g_autoptr(GBytes) bytes =
+        plan->cache ? fl_store_get(plan->cache, FL_KEPT_RECORD, name_of(plan)) : NULL;
+    g_autoptr(FlRecord) record = bytes ? fl_record_parse(bytes) : NULL;
+    g_autofree char *cause = record ? fl_facts_difference(record->facts, facts) : NULL;
+    if (cause)
+        note(plan, g_strdup_printf("since the last render, %s", cause));
+}
+
+bool fl_resume_verify(const FlPlan *plan, GError **error)
+{
+    Verify verify = {.plan = plan};
+    g_autoptr(FlFacts) facts = plan->drawing ? fl_plan_facts(plan) : NULL;
+    const FlDigest made_from = facts ? fl_facts_digest(facts) : plan->made_from;
+    if (!(facts ? verify_all_files(&verify, made_from, error) : verify_frames(&verify, error)))
+        return false;
+    if (film_of(plan))
+        verify_file(&verify, film_of(plan), fl_film_digest(plan, made_from));
+    if (verify.n_wrong > 0 && facts)
+        note_cause(plan, facts);
+    if (verify.n_wrong > 0)
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                    "%d of %d files are not as they would be made now", verify.n_wrong, verify.n);
+    else
+        note(plan, g_strdup_printf("all %d files are as they would be made now", verify.n));
+    return verify.n_wrong == 0;
 }

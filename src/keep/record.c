@@ -5,9 +5,9 @@
 #include "keep/sealed.h"
 #include <errno.h>
 
-#define MAGIC "fluidy-svg record 1"
-// magic, request, facts, inputs, found, films, done, overwrite, frames, sizes of the states
-#define TYPE "(s(tt)" FL_FACTS_TYPE FL_FACTS_TYPE FL_FACTS_TYPE FL_FACTS_TYPE "iba(tt)at)"
+#define MAGIC "fluidy-svg record 2"
+// magic, request, facts, inputs, found, done, overwrite, sizes of the states
+#define TYPE "(s(tt)" FL_FACTS_TYPE FL_FACTS_TYPE FL_FACTS_TYPE "ibat)"
 
 FlRecord *fl_record_new(void)
 {
@@ -15,8 +15,6 @@ FlRecord *fl_record_new(void)
     record->facts = fl_facts_new();
     record->inputs = fl_facts_new();
     record->found = fl_facts_new();
-    record->films = fl_facts_new();
-    record->frames = g_array_new(FALSE, TRUE, sizeof(FlDigest));
     record->states = g_ptr_array_new_with_free_func((GDestroyNotify)g_bytes_unref);
     return record;
 }
@@ -28,8 +26,6 @@ void fl_record_free(FlRecord *record)
     fl_facts_free(record->facts);
     fl_facts_free(record->inputs);
     fl_facts_free(record->found);
-    fl_facts_free(record->films);
-    g_array_unref(record->frames);
     g_ptr_array_unref(record->states);
     g_free(record);
 }
@@ -39,19 +35,14 @@ void fl_record_free(FlRecord *record)
 /* All but the states. */
 static GVariant *pack(const FlRecord *record, guint n_states)
 {
-    GVariantBuilder frames, sizes;
-    g_variant_builder_init(&frames, G_VARIANT_TYPE("a(tt)"));
-    for (guint f = 0; f < record->frames->len; f++) {
-        const FlDigest *digest = &g_array_index(record->frames, FlDigest, f);
-        g_variant_builder_add(&frames, "(tt)", digest->a, digest->b);
-    }
+    GVariantBuilder sizes;
     g_variant_builder_init(&sizes, G_VARIANT_TYPE("at"));
     for (guint k = 0; k < n_states; k++)
         g_variant_builder_add(&sizes, "t", (guint64)g_bytes_get_size(record->states->pdata[k]));
-    return g_variant_ref_sink(g_variant_new(
-        "(s(tt)@a(ss)@a(ss)@a(ss)@a(ss)iba(tt)at)", MAGIC, record->request.a, record->request.b,
-        fl_facts_pack(record->facts), fl_facts_pack(record->inputs), fl_facts_pack(record->found),
-        fl_facts_pack(record->films), record->done, record->overwrite, &frames, &sizes));
+    return g_variant_ref_sink(
+        g_variant_new("(s(tt)@a(ss)@a(ss)@a(ss)ibat)", MAGIC, record->request.a, record->request.b,
+                      fl_facts_pack(record->facts), fl_facts_pack(record->inputs),
+                      fl_facts_pack(record->found), record->done, record->overwrite, &sizes));
 }
 
 static FlSpan span_of(GBytes *bytes)
@@ -117,15 +108,6 @@ static bool take_states(FlRecord *record, GVariant *sizes, GBytes *bytes, FlRead
     return fl_reader_ends(reader);
 }
 
-static void take_frames(FlRecord *record, GVariant *frames)
-{
-    for (gsize f = 0; f < g_variant_n_children(frames); f++) {
-        FlDigest digest;
-        g_variant_get_child(frames, f, "(tt)", &digest.a, &digest.b);
-        g_array_append_val(record->frames, digest);
-    }
-}
-
 static FlFacts *take_facts(GVariant *packed, gsize child)
 {
     g_autoptr(GVariant) facts = g_variant_get_child_value(packed, child);
@@ -145,19 +127,15 @@ FlRecord *fl_record_parse(GBytes *bytes)
         return NULL;
     const char *magic;
     gboolean overwrite;
-    g_autoptr(GVariant) frames = NULL, sizes = NULL;
+    g_autoptr(GVariant) sizes = NULL;
     g_autoptr(FlRecord) record = g_new0(FlRecord, 1);
     record->facts = take_facts(packed, 2);
     record->inputs = take_facts(packed, 3);
     record->found = take_facts(packed, 4);
-    record->films = take_facts(packed, 5);
-    record->frames = g_array_new(FALSE, TRUE, sizeof(FlDigest));
     record->states = g_ptr_array_new_with_free_func((GDestroyNotify)g_bytes_unref);
-    g_variant_get(packed, "(&s(tt)@a(ss)@a(ss)@a(ss)@a(ss)ib@a(tt)@at)", &magic, &record->request.a,
-                  &record->request.b, NULL, NULL, NULL, NULL, &record->done, &overwrite, &frames,
-                  &sizes);
+    g_variant_get(packed, "(&s(tt)@a(ss)@a(ss)@a(ss)ib@at)", &magic, &record->request.a,
+                  &record->request.b, NULL, NULL, NULL, &record->done, &overwrite, &sizes);
     record->overwrite = overwrite;
-    take_frames(record, frames);
     const bool good = g_str_equal(magic, MAGIC) && record->done >= 0 &&
                       take_states(record, sizes, bytes, &reader);
     return good ? g_steal_pointer(&record) : NULL;

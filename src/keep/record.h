@@ -1,4 +1,4 @@
-/* The record of a render: what it was made from and what it has written. Beside unfinished frames
+/* The record of a render: what it was made from and how far it has come. Beside unfinished frames
  * it is a file, from which the render resumes; in the store it says that all is done. */
 #ifndef FLUIDY_KEEP_RECORD_H
 #define FLUIDY_KEEP_RECORD_H
@@ -11,10 +11,8 @@ typedef struct FlRecord {
     FlFacts *facts;    // all that decides the frames
     FlFacts *inputs;   // the digests of the files that were read, by path
     FlFacts *found;    // the folders of styles, by the names under which they were found
-    FlFacts *films;    // the digest of the film, by its path, format and speed
     int done;          // frames that are painted
     bool overwrite;    // the render may replace files that it has not written
-    GArray *frames;    // FlDigest of the files of each frame; not known: it was there before
     GPtrArray *states; // GBytes: of the painters, see fl_painters_save()
 } FlRecord;
 

@@ -4,10 +4,18 @@
 #include "io/formats.h"
 #include "io/pattern.h"
 #include "io/png.h"
+#include "io/provenance.h"
 #include "job/paint_files.h"
+#include "job/plan_facts.h"
 
 #define SHEET "paper_sheet" // region names have no underscore
 #define GROUND "paper_ground"
+
+static char *mark_of(const FlFrameWriter *writer, int frame)
+{
+    const int number = fl_drawing_number(writer->plan->drawing, frame);
+    return fl_mark_text(fl_mark_of_frame(writer->resume->made_from, number));
+}
 
 /* Writes a layer in the whole frame's size, so that any program can stack them. */
 static bool write_layer(const FlFrameWriter *writer, FlPng png, const char *name, int frame,
@@ -15,7 +23,9 @@ static bool write_layer(const FlFrameWriter *writer, FlPng png, const char *name
 {
     const FlPlan *plan = writer->plan;
     const int number = fl_drawing_number(plan->drawing, frame);
+    g_autofree char *mark = mark_of(writer, frame);
     png.width = plan->width, png.height = plan->height;
+    png.mark = mark;
     g_autofree char *path = fl_output_name(plan->options.layers, number, name, error);
     return path && (fl_resume_keeps(writer->resume, path) ||
                     fl_png_save(&png, path, fl_resume_replaces(writer->resume, frame), error));
@@ -44,6 +54,7 @@ bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *c
                            int frame, GError **error)
 {
     const FlRenderOptions *o = &writer->plan->options;
+    g_autofree char *mark = mark_of(writer, frame);
     for (int p = 0; o->paint && !o->merge && p < writer->plan->n_painted; p++) {
         const FlRegionPlan *region = &writer->plan->painted[p];
         g_autofree char *path =
@@ -51,7 +62,7 @@ bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *c
         if (!path)
             return false;
         if (frame % region->settings.hold == 0 && !fl_resume_keeps(writer->resume, path) &&
-            !fl_paint_file_save(painted[p], o->paint_area, path,
+            !fl_paint_file_save(painted[p], o->paint_area, path, mark,
                                 fl_resume_replaces(writer->resume, frame), error))
             return false;
     }
@@ -137,8 +148,10 @@ bool fl_frame_writer_init(FlFrameWriter *writer, const FlPlan *plan, const FlRes
                           bool opaque, FlFrameTaker taker, GError **error)
 {
     *writer = (FlFrameWriter){.plan = plan, .resume = resume};
+    const FlDigest of_film = fl_film_digest(plan, resume->made_from);
     FlSinkParams params = {
         .path = plan->output,
+        .made_from = plan->format->film ? of_film : resume->made_from,
         .width = plan->width,
         .height = plan->height,
         .fps = plan->options.fps,
@@ -150,7 +163,7 @@ bool fl_frame_writer_init(FlFrameWriter *writer, const FlPlan *plan, const FlRes
     writer->sink = fl_sink_open(taker.take ? &fl_sink_taken : plan->format, &params, error);
     if (!writer->sink || !plan->movie)
         return writer->sink != NULL;
-    params.path = plan->movie;
+    params.path = plan->movie, params.made_from = of_film;
     writer->movie = fl_sink_open(plan->movie_format, &params, error);
     return writer->movie && copy_finished_frames(writer, error);
 }

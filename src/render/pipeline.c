@@ -37,10 +37,9 @@ static bool write_finished(void *data, GError **error)
 {
     Pipeline *pipeline = data;
     const gint64 start = g_get_monotonic_time();
-    const bool done =
-        fl_frame_writer_frame(&pipeline->writer, &pipeline->finished, pipeline->finished_frame,
-                              error) &&
-        fl_resume_save(&pipeline->resume, pipeline->frames.plan, pipeline->finished_frame, error);
+    const bool done = fl_frame_writer_frame(&pipeline->writer, &pipeline->finished,
+                                            pipeline->finished_frame, error) &&
+                      fl_resume_save(&pipeline->resume, error);
     pipeline->write_s = seconds_since(start);
     return done;
 }
@@ -259,12 +258,14 @@ static bool try_render(const FlRenderOptions *options, FlFrameTaker taker, bool 
 {
     FlPlan *plan = fl_plan_new(options, error);
     Pipeline pipeline = {.taker = taker};
-    const bool whole = plan && plan->finished != FL_FINISHED_ALL;
+    const bool whole = plan && plan->drawing;
     fl_frames_init(&pipeline.frames, plan);
     if (whole && fl_plan_is_large(plan))
         fl_memory_map_planes();
     const bool done = plan && (!whole || fl_guard_inputs(plan, error)) &&
-                      (options->dry_run ? dry_run(&pipeline, error) : run(&pipeline, error));
+                      (options->verify    ? fl_resume_verify(plan, error)
+                       : options->dry_run ? dry_run(&pipeline, error)
+                                          : run(&pipeline, error));
     *stale = !done && fl_painters_stale(&pipeline.frames.painters);
     if (*stale && options->overwrite == FL_OVERWRITE_KEEP)
         pipeline.resume.forgets = true; // its frames are kept, its state is of no use
