@@ -47,9 +47,27 @@ else
 fi
 
 mkdir limited
-(ulimit -f 2 && trap '' XFSZ && paint limited)
+(ulimit -f 2 && paint limited)
 [ $? = 1 ] && says 'File too large' && no_litter limited
 result $? 'a limit on the size of files is one message'
+
+# cramped ARGUMENT...: paints in a control group with 80 MiB of memory.
+group=/sys/fs/cgroup/memory/fluidy-$$
+cramped() {
+    (echo $BASHPID >$group/tasks && "$program" film -s "$style" -o 'cramped/%d.png' --progress none -y "$@" >out 2>err)
+}
+if mkdir $group 2>/dev/null && echo $((80 << 20)) 2>/dev/null >$group/memory.limit_in_bytes; then
+    cramped -W 300 && found=0
+    for width in 1200 2000 4000; do
+        cramped -W $width
+        [ $? = 1 ] && says 'MiB of memory for painting' && says '--limit memory=N' || found=1
+    done
+    result $found 'in a control group with little memory, what takes more is one message'
+    rmdir $group
+else
+    rmdir $group 2>/dev/null
+    skip 'in a control group with little memory, what takes more is one message' 'no control groups here'
+fi
 
 touch file
 paint file/below

@@ -105,6 +105,17 @@ echo mine >left/.w_0003.png.mine
 paint left && grep -q mine left/.w_0003.png.mine && rm left/.w_0003.png.mine && same left whole
 result $? 'a hidden file of the killed run is gone after the second, one of somebody else is not'
 
+stop linked KILL 2
+ln -s ../outside 'linked/..w_%04d.png.state.part'
+paint linked && [ ! -e outside ] && same linked whole
+result $? 'a link in its place is replaced, not followed'
+
+stop told KILL 2
+paint told --report page && grep -q 'report and statistics lack the . frames' err && same told whole
+result $? 'who asks for a report of a render that goes on is told which frames it lacks'
+paint told -y --report page && ! grep -q lack err
+result $? 'which a render from the beginning does not'
+
 paint held_whole --hold 4
 stop held KILL 2 --hold 4
 paint held --hold 4 && same held held_whole

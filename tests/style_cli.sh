@@ -95,6 +95,11 @@ result $? 'but for paint that does not fill its picture'
 [ $? = 1 ]
 result $? 'a full disk is a failure'
 
+for more in 'steps = 100000' 'warm-up = 1000000'; do
+    grep -v "^${more%% *} " "$styles/07/recipe.ini" | sed "s/^\[recipe\]/&\n$more/" >endless.ini
+    refuses "a recipe with $more is too much work, and not begun" 1 \
+        '*--limit recipe=N to raise it*' simulate endless.ini -o x --limit style=4000
+done
 does 'a recipe is simulated' simulate "$dust/recipe.ini" -o dust
 { diff -r dust/frames "$dust/frames" >out && diff -r dust/masks "$dust/masks" >>out &&
     [ "$(tail -1 err)" = 'fluidy-style: frame 3 of 3' ]; }

@@ -118,6 +118,18 @@ static void windows_are_summed_within_their_box(void)
     }
 }
 
+static void a_part_of_any_size_touches_some_pixels(void)
+{
+    const FlRect all = {0, 0, 40, 30};
+    const FlRect some = fl_rect_touched(3.2, 4.9, 5.1, 6),
+                 vast = fl_rect_touched(-1e30, -2, 1e30, 2);
+    g_assert_true(some.x == 3 && some.y == 4 && some.width == 3 && some.height == 2);
+    g_assert_cmpint(fl_rect_and(all, vast).width, ==, 40);
+    g_assert_cmpint(fl_rect_and(all, vast).height, ==, 2);
+    g_assert_cmpint(fl_rect_and(all, fl_rect_touched(5e9, 5e9, 6e9, 6e9)).width, ==, 0);
+    g_assert_cmpint(fl_rect_and(all, fl_rect_touched(NAN, NAN, NAN, NAN)).width, ==, 0);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -129,5 +141,7 @@ int main(int argc, char **argv)
     g_test_add_func("/rect/blocks-leave-out-what-is-bare", blocks_leave_out_what_is_bare);
     g_test_add_func("/rect/windows-are-summed-within-their-box",
                     windows_are_summed_within_their_box);
+    g_test_add_func("/rect/a-part-of-any-size-touches-some-pixels",
+                    a_part_of_any_size_touches_some_pixels);
     return g_test_run();
 }

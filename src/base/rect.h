@@ -3,6 +3,7 @@
 #define FLUIDY_BASE_RECT_H
 
 #include <glib.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -20,6 +21,15 @@ typedef struct FlRect {
 static inline FlRect fl_rect_between(int x0, int y0, int x1, int y1)
 {
     return x0 < x1 && y0 < y1 ? (FlRect){x0, y0, x1 - x0, y1 - y0} : (FlRect){0, 0, 0, 0};
+}
+
+/** The pixels that a part of the plane touches, whose numbers may be anything. */
+static inline FlRect fl_rect_touched(double x0, double y0, double x1, double y1)
+{
+    enum { MOST = 1000000000 };
+    return fl_rect_between(
+        (int)floor(fmin(fmax(x0, -MOST), MOST)), (int)floor(fmin(fmax(y0, -MOST), MOST)),
+        (int)ceil(fmin(fmax(x1, -MOST), MOST)), (int)ceil(fmin(fmax(y1, -MOST), MOST)));
 }
 
 FlRect fl_rect_and(FlRect a, FlRect b); // the intersection; {0, 0, 0, 0} if empty

@@ -397,6 +397,7 @@ static void share_one_heap(void)
 int main(int argc, char **argv)
 {
     fl_wait_asleep(argv);
+    signal(SIGXFSZ, SIG_IGN); // a limit on the size of files is an error of writing
     share_one_heap();
     fill_standard_streams();
     setlocale(LC_CTYPE, "");

@@ -17,8 +17,12 @@ static bool still_named(int fd, const char *path)
 
 static int open_or_make(const char *path, bool folder)
 {
+    const int flags = O_CREAT | O_RDWR | O_NOFOLLOW | O_CLOEXEC;
+    int fd = folder ? -1 : open(path, flags, 0666);
+    if (fd < 0 && !folder && errno == ELOOP && unlink(path) == 0) // a link is replaced
+        fd = open(path, flags, 0666);
     if (!folder)
-        return open(path, O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+        return fd;
     if (mkdir(path, 0777) != 0 && errno != EEXIST)
         return -1;
     return open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);

@@ -1,5 +1,6 @@
 #include "job/plan_steps.h"
 
+#include "base/limits.h"
 #include "base/memory.h"
 #include "base/page.h"
 #include "drawing/open_drawing.h"
@@ -7,6 +8,7 @@
 #include "job/paint_files.h"
 #include "keep/sealed.h"
 #include "params/options.h"
+#include <math.h>
 #include <string.h>
 
 #define LARGE_PX 3000000
@@ -119,7 +121,10 @@ static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
     if (!fl_plan_find_regions(plan, error))
         return false;
     choose_size(plan, before);
-    if (!fl_plan_choose_styles(plan, error))
+    // styles may be enlarged, for which too little memory would end the program
+    if (!fl_limit_check(FL_LIMIT_MEMORY, ceil(fl_plan_least_bytes(plan) / (1 << 20)),
+                        fl_drawing_name(plan->drawing), error) ||
+        !fl_plan_choose_styles(plan, error))
         return false;
     list_inputs(plan);
     return (!plan->options.merge || plan->finished == FL_FINISHED_FRAMES ||
@@ -276,6 +281,12 @@ bool fl_plan_frames_alone(const FlPlan *plan)
 bool fl_plan_is_large(const FlPlan *plan)
 {
     return (size_t)plan->width * (size_t)plan->height > LARGE_PX;
+}
+
+double fl_plan_least_bytes(const FlPlan *plan)
+{
+    const double pixels = (double)plan->width * plan->height;
+    return 50e6 + 30 * pixels; // measured: the libraries, paper, a frame
 }
 
 bool fl_plan_is_of_paint(const FlPlan *plan)

@@ -94,6 +94,9 @@ void fl_plan_part(const FlPlan *plan, int n_frames, int *first, int *end);
  * after each stage. On small pages, faulting it in again would take a tenth of a draft. */
 bool fl_plan_is_large(const FlPlan *plan);
 
+/** The memory that painting takes at least, whatever the regions and styles. */
+double fl_plan_least_bytes(const FlPlan *plan);
+
 /** True if only paint is made, as in the task of a farm; then no frame is composed. */
 bool fl_plan_is_of_paint(const FlPlan *plan);
 

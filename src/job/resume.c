@@ -134,12 +134,17 @@ static bool check_files(const FlResume *resume, const FlPlan *plan, GError **err
 static void note_resume(const FlResume *resume, const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
-    if (!o->note)
-        return;
-    g_autofree char *line =
-        g_strdup_printf("resuming an earlier run, which painted %d of %d frames",
-                        resume->first - plan->first, plan->end - plan->first);
-    o->note(line, o->data);
+    const int n = resume->first - plan->first;
+    g_autofree char *line = g_strdup_printf(
+        "resuming an earlier run, which painted %d of %d frames", n, plan->end - plan->first);
+    g_autofree char *lack = g_strdup_printf(
+        "report and statistics lack the %d frames that an earlier run has painted; use ‘overwrite’ "
+        "to paint them again",
+        n);
+    if (o->note)
+        o->note(line, o->data);
+    if (o->warning && n > 0 && (o->report || o->stats))
+        o->warning(lack, o->data);
 }
 
 bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GError **error)

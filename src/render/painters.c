@@ -14,8 +14,7 @@
 static bool check_memory(const FlPainters *painters, GError **error)
 {
     const FlPlan *plan = painters->plan;
-    const double pixels = (double)plan->width * plan->height;
-    double bytes = 50e6 + 30 * pixels, largest = 0; // measured: the libraries, paper, a frame
+    double bytes = fl_plan_least_bytes(plan), largest = 0;
     for (int p = 0; p < painters->n; p++) {
         const FlPainter *painter = painters->painter[p];
         bytes += fl_painter_bytes(painter, fl_plan_is_large(plan));

@@ -170,28 +170,50 @@ static bool simulate(FlStyle *style, const FlRecipe *recipe, int size,
     return true;
 }
 
-static bool within_limit(const FlRecipe *recipe, int size, const char *path, GError **error)
+static double steps_of(const FlRecipe *recipe)
 {
-    const double pixels = (double)recipe->width * recipe->height * recipe->frames;
-    return fl_limit_check(FL_LIMIT_STYLE, pixels * size * size / 1e6, path, error);
+    double steps = 0;
+    for (int frame = 0; frame < recipe->frames && recipe->dust.grains == 0; frame++)
+        steps += steps_to(recipe, frame);
+    return steps;
 }
 
 /* By steps of all cells and moves of all grains; measured. */
 double fl_recipe_seconds(const FlRecipe *recipe, int size)
 {
     const double pixels = (double)recipe->width * recipe->height;
-    double steps = 0, grains = 0;
-    for (int frame = 0; frame < recipe->frames && recipe->dust.grains == 0; frame++)
-        steps += steps_to(recipe, frame);
-    grains = (double)recipe->dust.grains * recipe->frames;
+    const double steps = steps_of(recipe), grains = (double)recipe->dust.grains * recipe->frames;
     return pixels * recipe->oversample * recipe->oversample * steps * 6e-8 + grains * 6e-7 +
            pixels * size * size * recipe->frames * 6e-7;
+}
+
+/* The most that it can take beyond the estimate, seconds of one core: each iteration of a stage
+ * takes a cell some 6 ns, a fibre a px some 20 ns, and a try to place a grain 50 ns an event. */
+static double most_seconds(const FlRecipe *recipe, int size)
+{
+    enum { ITERATIONS = 50, TRIES = 1000 }; // of velocities in a step; of a grain
+    const FlFlow *flow = &recipe->flow;
+    const double pixels = (double)recipe->width * recipe->height, cells = recipe->oversample;
+    const double iterations = (double)flow->diffusions * recipe->n_pigments +
+                              (flow->shallow ? ITERATIONS + flow->sweeps : 0);
+    const double fibres = recipe->paper.fibres * pixels / 100;
+    return fl_recipe_seconds(recipe, size) +
+           steps_of(recipe) * pixels * cells * cells * iterations * 6e-9 +
+           fibres * recipe->paper.fibre_px * cells * cells * cells * 2e-8 +
+           (double)recipe->dust.grains * TRIES * recipe->n_events * 5e-8;
+}
+
+static bool within_limits(const FlRecipe *recipe, int size, const char *path, GError **error)
+{
+    const double pixels = (double)recipe->width * recipe->height * recipe->frames;
+    return fl_limit_check(FL_LIMIT_STYLE, pixels * size * size / 1e6, path, error) &&
+           fl_limit_check(FL_LIMIT_RECIPE, most_seconds(recipe, size), path, error);
 }
 
 FlStyle *fl_recipe_paint(const FlRecipe *recipe, const char *path, int size,
                          FlWatercolourProgress progress, void *data, GError **error)
 {
-    if (!within_limit(recipe, size, path, error))
+    if (!within_limits(recipe, size, path, error))
         return NULL;
     g_autoptr(FlStyle) style = new_style(recipe, size, path, error);
     if (!style || !simulate(style, recipe, size, progress, data, error))

@@ -119,8 +119,7 @@ static bool stage_init(Stage *stage, const FlRequest *frame, GError **error)
 static FlRect step_box(const Stage *stage, const FlDrawStep *step)
 {
     return fl_rect_and((FlRect){0, 0, stage->frame->width, stage->frame->height},
-                       fl_rect_between((int)floorf(step->box[0]), (int)floorf(step->box[1]),
-                                       (int)ceilf(step->box[2]), (int)ceilf(step->box[3])));
+                       fl_rect_touched(step->box[0], step->box[1], step->box[2], step->box[3]));
 }
 
 /** The box of all steps of a draw. */

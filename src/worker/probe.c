@@ -157,8 +157,7 @@ static float sum_of(cairo_surface_t *coverage, FlRect box)
 /** The pixels of the small picture that a rectangle of the picture touches. */
 static FlRect small_box(const FlFrameProbe *f, double x0, double y0, double x1, double y1)
 {
-    return fl_rect_between((int)floor(x0 / f->factor), (int)floor(y0 / f->factor),
-                           (int)ceil(x1 / f->factor), (int)ceil(y1 / f->factor));
+    return fl_rect_touched(x0 / f->factor, y0 / f->factor, x1 / f->factor, y1 / f->factor);
 }
 
 /** The page in the picture. */
