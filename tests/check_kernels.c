@@ -517,7 +517,6 @@ static void run_rows(const FlRowKernels *rows, Noise *z, int n, int at)
     const FlOcclusion layer = {z->rgba + at, z->rgba + ROW, n % 2 ? z->rgba + 3 : NULL, n,
                                n % 5 > 0};
     rows->occlude(&layer, z->sum[2] + at, z->above + at, z->area + at, n);
-    z->seed[0] += rows->keep_hidden(z->area + at, z->above + at, z->rgba + 3 * ROW, n);
     rows->multiply(z->above + at, z->rgba + at, n);
 }
 
@@ -669,7 +668,6 @@ static void time_rows(const FlRowKernels *rows)
     TIME("level_opaque", rows->level_opaque(&sums, z.pixel, ROW));
     const FlOcclusion layer = {z.rgba, z.rgba + ROW, z.rgba + 2 * ROW, 200, true};
     TIME("occlude", rows->occlude(&layer, z.sum[2], z.above, z.area, ROW));
-    TIME("keep_hidden", (void)rows->keep_hidden(z.area, z.above, z.rgba, ROW));
     TIME("multiply", rows->multiply(z.above, z.rgba, ROW));
 }
 

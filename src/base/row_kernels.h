@@ -120,10 +120,6 @@ typedef struct FlRowKernels {
     void (*occlude)(const FlOcclusion *layer, uint32_t *rgba, uint16_t *paint, uint8_t *area,
                     int n);
 
-    /** Culling: clears those of n hidden where the layers above, of which area and paint are, leave
-     * something of what is below. Returns: whether any of them is left. */
-    bool (*keep_hidden)(const uint8_t *area, const uint16_t *paint, uint8_t *hidden, int n);
-
     /** Paper: values[i] *= factor[i] / 32768, rounded, at most 255. */
     void (*multiply)(const uint16_t *factor, uint8_t *values, int n);
 

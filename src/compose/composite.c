@@ -142,8 +142,8 @@ static bool pack_some(FlLayer *layers, int n, GError **error)
     return fl_parallel_error_propagate(error, first);
 }
 
-/* The number of pixels of layers that are made together: each is culled by those before it, but too
- * few leave threads without work. */
+/* The number of pixels of layers that are made together: they take memory until they are packed,
+ * but too few leave threads without work. */
 static size_t pixels_at_once(const Stack *stack)
 {
     const size_t page = (size_t)stack->sources.input->width * (size_t)stack->sources.input->height;
@@ -189,7 +189,6 @@ static bool resolve_in_turn(Stack *whole, GError **error)
     if (!init_underlay(&underlay, whole, error) ||
         !fl_layers_above_init(&above, input->width, input->height, input->gap_px, error))
         return false;
-    stack.sources.above = input->layers_apart ? NULL : &above;
     for (int end = stack.composite->n_layers, first; end > 0; end = first) {
         first = first_of_batch(&stack, end);
         FlLayer *layers = stack.composite->layers + first;
@@ -258,7 +257,7 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
     const int n_regions = fl_drawing_regions(input->drawing);
     g_autofree double *areas = g_new(double, MAX(n_regions, 1));
     fl_region_areas_find(draws, n_regions, areas);
-    Stack stack = {composite, {input, cover, exposures, areas, NULL}, draw};
+    Stack stack = {composite, {input, cover, exposures, areas}, draw};
     if (!(needs_all(&stack) ? resolve_all : resolve_in_turn)(&stack, error))
         return false;
     note_laid(composite, input, draw);

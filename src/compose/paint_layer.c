@@ -118,20 +118,6 @@ static bool colour_layer(FlLayer *layer, const FlLayerSources *sources,
     return true;
 }
 
-/* Takes the paint of culled pixels away. */
-static void take_culled(const FlLayer *layer, int16_t *amounts)
-{
-    if (!layer->owns_coverage)
-        return;
-    for (int y = 0; y < layer->area.box.height; y++) {
-        const FlColumns span = fl_area_row(&layer->area, y);
-        const size_t row = (size_t)y * (size_t)layer->area.box.width;
-        const uint8_t *coverage = layer->coverage + row;
-        for (int x = span.first; x < span.last; x++)
-            amounts[row + (size_t)x] = coverage[x] ? amounts[row + (size_t)x] : -1;
-    }
-}
-
 static int luma(const uint8_t rgb[3])
 {
     return (2 * rgb[0] + 7 * rgb[1] + rgb[2]) / 10;
@@ -163,7 +149,6 @@ static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
                      fl_drawing_height(drawing), MAX(border_px, 1), asked_medium(painted),
                      darkness_of(&colouring), knockout, error))
         return false;
-    take_culled(layer, amounts);
     return colour_layer(layer, sources, painted, &colouring, amounts, error);
 }
 
@@ -241,7 +226,6 @@ bool fl_layer_paint(FlLayer *layer, const FlLayerSources *sources, int r, GError
         return false;
     const bool cut_out = painted && is_cut_out(painted);
     if ((cut_out && !reach_out(layer, sources, draw, painted, error)) ||
-        !fl_layer_cull(layer, sources->above, error) ||
         !(layer->rgba = fl_alloc_scratch(4 * fl_rect_pixels(layer->area.box), 1, "a layer", error)))
         return false;
     if (painted)

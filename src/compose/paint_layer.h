@@ -3,17 +3,15 @@
 #define FLUIDY_COMPOSE_PAINT_LAYER_H
 
 #include "compose/compose_input.h"
-#include "compose/culling.h"
 #include "compose/layers.h"
 #include "cover/cover_map.h"
 
 /** The sources of a frame's layers; borrowed. */
 typedef struct FlLayerSources {
     const FlComposeInput *input;
-    const FlCover *cover;       // of the frame
-    const int *exposures;       // of each painted region
-    const double *areas;        // of each region, px
-    const FlLayersAbove *above; // that cull the layer; NULL: the layer stays whole
+    const FlCover *cover; // of the frame
+    const int *exposures; // of each painted region
+    const double *areas;  // of each region, px
 } FlLayerSources;
 
 /** The stacking of a region. Cut out paint hides by its own alpha alone, and does not knock out. */
