@@ -103,67 +103,6 @@ static void frames_and_outlines_are_those_of_one_process(void)
     }
 }
 
-/** What the cache keeps of the last frame, each with a reference, so that no other gets its place.
- */
-static GList *kept_by(const FlFrameCache *cache)
-{
-    GList *kept = g_hash_table_get_values(cache->last);
-    for (GList *one = kept; one; one = one->next)
-        g_array_ref(one->data);
-    return kept;
-}
-
-static void free_kept(GList *kept)
-{
-    g_list_free_full(kept, (GDestroyNotify)g_array_unref);
-}
-
-/** How many of one list are in another. */
-static int in_both(GList *kept, GList *other)
-{
-    int n = 0;
-    for (GList *one = kept; one; one = one->next)
-        n += g_list_find(other, one->data) != NULL;
-    return n;
-}
-
-static FlDrawList *draw_cached(const FlDrawing *drawing, int frame, FlFrameCache *cache)
-{
-    FlRequest request = fl_drawing_request(drawing, frame, FL_VERB_DRAW);
-    request.step = drawing->frame[frame].step, request.n_steps = drawing->frame[frame].n;
-    return fl_draw_frame(&request, cache, NULL);
-}
-
-/* One shape rests while the hole in the mask of another goes on and a third moves. */
-static void what_rests_is_drawn_once_and_nothing_else(void)
-{
-    g_auto(FlFrameCache) cache = {0};
-    g_autoptr(Scratch) folder = scratch_make();
-    for (int frame = 1; frame <= 4; frame++) {
-        g_autofree char *name = g_strdup_printf("f%d.svg", frame);
-        g_autofree char *text = g_strdup_printf(
-            SVG("<mask id='m'><path d='M0 0h20v20h-20zM%d 3v3h3v-3z' fill='#fff'/></mask>"
-                "<rect x='20' width='12' height='9' fill='#383'/>"
-                "<rect width='12' height='9' fill='#a31' mask='url(#m)'/>"
-                "<circle cx='%d' cy='20' r='4'/>"),
-            frame, 5 * frame);
-        g_free(scratch_write(folder, name, text));
-    }
-    g_autoptr(FlDrawing) drawing = open_drawing(folder, false);
-    GList *before = NULL;
-    for (int frame = 0; frame < 4; frame++) {
-        g_autoptr(FlDrawList) with = draw_cached(drawing, frame, &cache);
-        g_autoptr(FlDrawList) without = draw_cached(drawing, frame, NULL);
-        g_assert_cmpint(with->n, ==, 3);
-        assert_same(with, without);
-        GList *now = kept_by(&cache);
-        g_assert_cmpint(in_both(before, now), ==, frame > 0);
-        free_kept(before);
-        before = now;
-    }
-    free_kept(before);
-}
-
 /** The processes whose parent is `parent`. Returns: how many, at most `most`. */
 static int children_of(pid_t parent, pid_t *child, int most)
 {
@@ -346,7 +285,6 @@ int main(int argc, char **argv)
 #define TEST(name, function) g_test_add_func("/workers/" name, function)
     TEST("frames-and-outlines-are-those-of-one-process",
          frames_and_outlines_are_those_of_one_process);
-    TEST("what-rests-is-drawn-once-and-nothing-else", what_rests_is_drawn_once_and_nothing_else);
     TEST("a-worker-that-is-killed-is-replaced", a_worker_that_is_killed_is_replaced);
     TEST("a-worker-that-is-stopped-has-not-run-out-of-time",
          a_worker_that_is_stopped_has_not_run_out_of_time);

@@ -1,6 +1,5 @@
 #include "base/alloc.h"
 #include "base/rng.h"
-#include "svg/leaf_digest.h"
 #include "worker/hand_line.h"
 #include "worker/raster.h"
 #include "worker/verbs.h"
@@ -82,9 +81,6 @@ typedef struct Stage {
     const FlRequest *frame;
     FlSvg *svg;
     cairo_surface_t *coverage, *picture; // scratch, blank between draws; picture may be NULL
-    FlFrameCache *cache;                 // of arrays of one FlDraw; NULL: no cache
-    size_t cached_bytes;                 // that this frame has kept
-    FlDigest *leaf_digest, *unit_digest; // with a cache
     FlLinePaths **paths;                 // by step, of those that a hand draws; NULL: no hand
 } Stage;
 
@@ -98,10 +94,6 @@ static void stage_clear(Stage *stage)
     for (int i = 0; stage->paths && i < stage->frame->n_steps; i++)
         fl_line_paths_free(stage->paths[i]);
     g_free(stage->paths);
-    g_free(stage->leaf_digest);
-    g_free(stage->unit_digest);
-    if (stage->cache)
-        fl_frame_cache_next_frame(stage->cache);
 }
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Stage, stage_clear)
 
@@ -426,77 +418,11 @@ static bool draw_steps(Stage *stage, const Draw *draw, FlDraw *out, GError **err
     return draw_in(stage, draw, &target, error) && keep_drawn(&target, out, error);
 }
 
-/* ---- what looks as in the frame before ------------------------------------------------------- */
-
-static void cache_stage(Stage *stage, FlFrameCache *cache)
-{
-    const FlLeaves *leaves = fl_svg_leaves(stage->svg);
-    stage->cache = cache;
-    if (!cache)
-        return;
-    stage->leaf_digest = g_new(FlDigest, leaves->leaf->len + 1);
-    stage->unit_digest = g_new(FlDigest, leaves->unit->len + 1);
-    fl_leaf_digests(stage->svg, stage->leaf_digest, stage->unit_digest);
-}
-
-/** The digest of all inputs of a step; unknown if its leaf's is. */
-static FlDigest digest_of_step(const Stage *stage, const FlDrawStep *step)
-{
-    const FlLeaves *leaves = fl_svg_leaves(stage->svg);
-    const GArray *list = step->leaf >= 0 ? leaves->leaf : leaves->unit;
-    const guint index = (guint)(step->leaf >= 0 ? step->leaf : -1 - step->leaf);
-    const uint8_t how[] = {step->part,   step->flat,  step->rgb[0], step->rgb[1],
-                           step->rgb[2], step->alpha, step->drawn,  step->blend_mode};
-    FlDigest digest = {0, 0};
-    if (index < list->len)
-        digest = (step->leaf >= 0 ? stage->leaf_digest : stage->unit_digest)[index];
-    if (!fl_digest_is_known(digest))
-        return digest;
-    fl_digest_add(&digest, how, sizeof how);
-    fl_digest_add(&digest, step->box, sizeof step->box);
-    return digest;
-}
-
-/** The digest of all inputs of a draw; unknown for a draw by hand. */
-static FlDigest digest_of_draw(const Stage *stage, const Draw *draw)
-{
-    const FlRequest *frame = stage->frame;
-    const double page[] = {frame->width, frame->height, frame->page.width, frame->page.height};
-    FlDigest digest = {0, 0};
-    if (!stage->cache || has_hand(stage, draw))
-        return digest;
-    fl_digest_add(&digest, page, sizeof page);
-    for (guint i = 0; i < draw->steps->len; i++) {
-        const FlDigest step =
-            digest_of_step(stage, &stage->frame->step[g_array_index(draw->steps, int, i)]);
-        if (!fl_digest_is_known(step))
-            return step;
-        fl_digest_add(&digest, &step, sizeof step);
-    }
-    return digest;
-}
-
-/** Rasterises a draw, or copies an identical one from the frame before. */
-static bool make_draw(Stage *stage, const Draw *draw, FlDraw *out, GError **error)
-{
-    const FlDigest digest = digest_of_draw(stage, draw);
-    const FlDraw *known = stage->cache ? fl_draw_cache_find(stage->cache, digest) : NULL;
-    if (!known)
-        return draw_steps(stage, draw, out, error) &&
-               (!stage->cache ||
-                fl_draw_cache_keep(stage->cache, digest, out, &stage->cached_bytes, error));
-    stage->cached_bytes += fl_draw_bytes(known);
-    const bool copied = fl_draw_copy(known, out, error);
-    out->region = draw->region;
-    return copied;
-}
-
-FlDrawList *fl_draw_frame(const FlRequest *frame, FlFrameCache *cache, GError **error)
+FlDrawList *fl_draw_frame(const FlRequest *frame, GError **error)
 {
     g_auto(Stage) stage = {0};
     if (!stage_init(&stage, frame, error))
         return NULL;
-    cache_stage(&stage, cache);
     if (frame->hand)
         find_paths(&stage);
     g_autoptr(GArray) draws = draws_of(frame);
@@ -504,7 +430,7 @@ FlDrawList *fl_draw_frame(const FlRequest *frame, FlFrameCache *cache, GError **
     out->draw = g_new0(FlDraw, draws->len + 1);
     for (guint r = 0; r < draws->len; r++) {
         out->n++;
-        if (!make_draw(&stage, &g_array_index(draws, Draw, r), &out->draw[r], error))
+        if (!draw_steps(&stage, &g_array_index(draws, Draw, r), &out->draw[r], error))
             return NULL;
     }
     return g_steal_pointer(&out);

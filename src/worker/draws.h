@@ -2,7 +2,6 @@
 #ifndef FLUIDY_WORKER_DRAWS_H
 #define FLUIDY_WORKER_DRAWS_H
 
-#include "base/frame_cache.h"
 #include "base/rect.h"
 #include "base/tooth.h"
 #include "params/region_settings.h"
@@ -66,25 +65,6 @@ bool fl_steps_need_hand(const FlDrawStep *step, int n, const FlHand *hand);
 
 void fl_draw_clear(FlDraw *draw);
 void fl_draw_list_free(FlDrawList *draws); // NULL is fine
-
-/* ---- draws of a frame, for the next one: what rests is drawn once -------------------------------
- */
-
-/** The bytes of what is drawn. */
-size_t fl_draw_bytes(const FlDraw *draw);
-
-/** Copies what no hand has drawn. FL_ERROR_NO_MEMORY; clear the copy then as well. */
-bool fl_draw_copy(const FlDraw *draw, FlDraw *copy, GError **error);
-
-/** The draw of that digest; NULL: no draw has it. */
-const FlDraw *fl_draw_cache_find(FlFrameCache *cache, FlDigest digest);
-
-/**
- * Keeps a copy of a draw whose digest is known, while there is room beside the `bytes` that the
- * frame has kept, and adds its own. FL_ERROR_NO_MEMORY.
- */
-bool fl_draw_cache_keep(FlFrameCache *cache, FlDigest digest, const FlDraw *draw, size_t *bytes,
-                        GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlDrawList, fl_draw_list_free)
 

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_WORKER_SURVEY_FRAME_H
 #define FLUIDY_WORKER_SURVEY_FRAME_H
 
+#include "base/frame_cache.h"
 #include "worker/messages.h"
 
 /**

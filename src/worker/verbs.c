@@ -15,7 +15,6 @@ void fl_servant_clear(FlServant *servant)
 {
     forget_measured(servant);
     fl_frame_cache_clear(&servant->probes);
-    fl_frame_cache_clear(&servant->draws);
 }
 
 /* ---- count and measure ----------------------------------------------------------------------- */
@@ -112,9 +111,9 @@ static bool outline(const FlRequest *r, GByteArray *out, GError **error)
     return data != NULL;
 }
 
-static bool draw(FlServant *servant, const FlRequest *r, GByteArray *out, GError **error)
+static bool draw(const FlRequest *r, GByteArray *out, GError **error)
 {
-    g_autoptr(FlDrawList) draws = fl_draw_frame(r, &servant->draws, error);
+    g_autoptr(FlDrawList) draws = fl_draw_frame(r, error);
     g_autoptr(GBytes) packed = draws ? fl_draws_pack(draws, error) : NULL;
     if (packed)
         fl_put(out, g_bytes_get_data(packed, NULL), g_bytes_get_size(packed));
@@ -133,7 +132,7 @@ static bool answer(FlServant *servant, const FlRequest *r, GByteArray *out, GErr
     case FL_VERB_OUTLINES:
         return outline(r, out, error);
     default:
-        return draw(servant, r, out, error);
+        return draw(r, out, error);
     }
 }
 

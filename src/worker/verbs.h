@@ -2,11 +2,12 @@
 #ifndef FLUIDY_WORKER_VERBS_H
 #define FLUIDY_WORKER_VERBS_H
 
+#include "base/frame_cache.h"
 #include "worker/messages.h"
 
-/** State between requests: parts at rest are read and drawn once. Zero is the empty state. */
+/** State between requests: parts at rest are read once. Zero is the empty state. */
 typedef struct FlServant {
-    FlFrameCache probes, draws;
+    FlFrameCache probes;
     FlSvg *measured;     // the frame that was measured last
     char *file;          // its file
     FlSvgOptions svg;    // its options; `whole` is NULL
@@ -19,7 +20,7 @@ void fl_servant_clear(FlServant *servant);
 GByteArray *fl_serve(FlServant *servant, const void *bytes, size_t n);
 
 /** Answers FL_VERB_DRAW. Returns: NULL with an error. */
-FlDrawList *fl_draw_frame(const FlRequest *request, FlFrameCache *cache, GError **error);
+FlDrawList *fl_draw_frame(const FlRequest *request, GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlServant, fl_servant_clear)
 
