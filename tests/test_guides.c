@@ -439,25 +439,6 @@ static void same_bytes_on_any_thread_count(void)
         fl_guides_clear(&first[frame]);
 }
 
-static void kept_distances_of_the_first_frame_are_those_made_again(void)
-{
-    Draw draw = growing_disc;
-    g_autoptr(GError) error = NULL;
-    g_auto(FlGuides) g = {0}, kept = {0};
-    const FlGuideSource source = {W, H, 3, draw_mask, NULL, &draw, .keeps_first = true};
-    g_autoptr(FlGuideSequence) s = fl_guide_sequence_new(&source, &unsmoothed, &error);
-    g_autoptr(FlGuideSequence) other = sequence_of(&draw, 3, &unsmoothed);
-    g_assert_no_error(error);
-    for (int k = 0; k < 3; k++) { // kept; of another frame; dropped
-        const int frame = k == 1;
-        if (k == 2)
-            fl_guide_sequence_drop_first(s);
-        get(s, frame, &kept);
-        get(other, frame, &g);
-        g_assert_cmpmem(kept.distance, W * H * sizeof(float), g.distance, W * H * sizeof(float));
-    }
-}
-
 static bool motion_of_last(void *data, int frame, const FlOutlinePair *outlines, float *motion,
                            GError **error)
 {
@@ -510,7 +491,6 @@ int main(int argc, char **argv)
     TEST(what_goes_wrong_in_the_source_is_passed_on);
     TEST(stored_integers_of_any_size_come_back);
     TEST(same_bytes_on_any_thread_count);
-    TEST(kept_distances_of_the_first_frame_are_those_made_again);
     TEST(uniform_motion_is_not_asked_for);
 #undef TEST
     return g_test_run();

@@ -565,23 +565,13 @@ static bool step(Builder *b, int frame, GError **error)
     return fl_parallel_error_propagate(error, first);
 }
 
-static void keep_first(const Builder *b, FlGuideSequence *sequence)
-{
-    FlOutline *first = b->outlines[0].outline;
-    if (sequence->source.keeps_first && first && !first->empty)
-        sequence->first = fl_outline_ref(first);
-}
-
 bool fl_guide_sequence_build(FlGuideSequence *sequence, GError **error)
 {
     g_auto(Builder) builder = {0};
     if (!builder_init(&builder, sequence, error) || !prepare_first(&builder, error))
         return false;
-    keep_first(&builder, sequence);
     for (int frame = -1; frame < sequence->source.n_frames; frame++)
         if (!step(&builder, frame, error))
             return false;
-    if (sequence->first)
-        g_clear_pointer(&sequence->first->normal, g_free); // directions are made
     return true;
 }

@@ -32,7 +32,6 @@ struct FlGuideSequence {
     FlGuideParams params;
     FlFrameRecord *frames; // source.n_frames
     FlSpill *spill;        // block of a plane of a frame: FL_N_GUIDE_PLANES * frame + plane
-    FlOutline *first;      // the first frame's, with its distance; NULL: it is not kept
 };
 
 static inline size_t fl_guide_plane_block(int frame, FlGuidePlane plane)

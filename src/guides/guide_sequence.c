@@ -77,16 +77,10 @@ FlGuideSequence *fl_guide_sequence_new(const FlGuideSource *source, const FlGuid
     return g_steal_pointer(&sequence);
 }
 
-void fl_guide_sequence_drop_first(FlGuideSequence *sequence)
-{
-    g_clear_pointer(&sequence->first, fl_outline_unref);
-}
-
 void fl_guide_sequence_free(FlGuideSequence *sequence)
 {
     if (!sequence)
         return;
-    fl_guide_sequence_drop_first(sequence);
     fl_spill_free(sequence->spill);
     g_free(sequence->frames);
     g_free(sequence);
@@ -243,14 +237,6 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
     return true;
 }
 
-/** True if guides are of the whole first frame and its distance is kept. */
-static bool is_kept(const FlGuideSequence *sequence, int frame, const FlGuides *guides)
-{
-    const FlGuideSource *source = &sequence->source;
-    return sequence->first && frame == 0 && guides->width == source->width &&
-           guides->height == source->height;
-}
-
 bool fl_guide_sequence_distance(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                                 GError **error)
 {
@@ -264,9 +250,7 @@ bool fl_guide_sequence_distance(const FlGuideSequence *sequence, int frame, FlGu
     fl_rect_copy(shape, box, guides->mask, part, 1);
     g_clear_pointer(&shape, g_free);
     const size_t bytes = fl_rect_pixels(part) * sizeof *guides->distance;
-    if (is_kept(sequence, frame, guides))
-        memcpy(guides->distance, sequence->first->distance, bytes);
-    else if (!fl_distance(guides->mask, part.width, part.height, guides->distance, error))
+    if (!fl_distance(guides->mask, part.width, part.height, guides->distance, error))
         return false;
     memcpy(guides->depth, guides->distance, bytes);
     return true;

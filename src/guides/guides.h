@@ -89,8 +89,7 @@ typedef struct FlGuideSource {
     /** Tells if that displacement is uniform: then motion() is not called. NULL: unknown
      * beforehand. */
     FlUniformMotion (*uniform)(void *data, int frame, const FlOutlinePair *outlines);
-    bool keeps_flow;  // unrounded, for fl_guide_sequence_flow()
-    bool keeps_first; // distances of the first frame, until fl_guide_sequence_drop_first()
+    bool keeps_flow; // unrounded, for fl_guide_sequence_flow()
 } FlGuideSource;
 
 /** The guides of a whole sequence. Its memory does not grow with the number of frames (FlSpill). */
@@ -99,9 +98,6 @@ typedef struct FlGuideSequence FlGuideSequence;
 /** Reads the whole sequence once. `source` is copied; its data must stay until _free. */
 FlGuideSequence *fl_guide_sequence_new(const FlGuideSource *source, const FlGuideParams *params,
                                        GError **error);
-
-/** Frees the data kept of the first frame; it is made again on demand. */
-void fl_guide_sequence_drop_first(FlGuideSequence *sequence);
 
 void fl_guide_sequence_free(FlGuideSequence *sequence); // NULL is fine
 

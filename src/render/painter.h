@@ -22,7 +22,6 @@ typedef struct FlPainter {
     int picture;       // the last one painted
     int next;          // pictures of the lead-in and the film before the next one to be painted
     bool follows;      // a picture was painted before, in this render or an earlier one
-    bool keeps_first;  // distances of the first picture, from where guides are made
     int asked, answer; // a picture, and the one around which its depth is measured
     double cost_s; // of the last picture that was synthesised, by one thread; 0 before the first
     FlGuideSequence *sequence;

@@ -131,8 +131,7 @@ FlGuideSource fl_painter_guide_source(FlPainter *painter)
                                                        : NULL,
                            .uniform = exact ? exact_uniform : NULL,
                            .data = painter,
-                           .keeps_flow = painter->plan->keeps_flow,
-                           .keeps_first = painter->keeps_first};
+                           .keeps_flow = painter->plan->keeps_flow};
 }
 
 int fl_guided_grid(const FlStyleInstance *style, FlRect page)
@@ -448,7 +447,6 @@ bool fl_painter_make_guides(FlPainter *painter, GError **error)
         return false;
     const FlRect part = resting.keeps ? needed_part(painter, moving) : whole;
     const bool filled = fill_guides(painter, part, guides, error);
-    fl_guide_sequence_drop_first(painter->sequence);
     guides->disposable = resting.keeps || !painter->wants_guides;
     guides->whole = shown->mask ? shown : NULL;
     guides->resting = resting, resting = (FlRestingParts){0};

@@ -45,23 +45,8 @@ static FlWorkItem item_of(const FlPainters *painters, int p, double cost)
     return (FlWorkItem){p, cost, .alone = pixels > BESIDE_PX};
 }
 
-#define FIRST_BYTES ((size_t)32 << 20) // of distances that wait to be asked for by first pictures
-
-/* The first picture of most regions is painted soon after its guides are made. */
-static void choose_kept(FlPainters *painters)
-{
-    size_t bytes = 0;
-    for (int p = 0; p < painters->n; p++) {
-        FlPainter *painter = painters->painter[p];
-        const size_t own = fl_rect_pixels(fl_painter_guided(painter)) * sizeof(float);
-        painter->keeps_first = bytes + own <= FIRST_BYTES;
-        bytes += painter->keeps_first ? own : 0;
-    }
-}
-
 static bool make_guides(FlPainters *painters, GError **error)
 {
-    choose_kept(painters);
     g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(painters->n, 1));
     for (int p = 0; p < painters->n; p++)
         items[p] = item_of(painters, p, (double)fl_rect_pixels(painters->painter[p]->result.rect));
