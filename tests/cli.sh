@@ -430,10 +430,13 @@ on_paper white -b '#ffffff' && on_paper white-none -b '#ffffff' --paper none &&
     ! same sheet/white1.png sheet/white-none1.png
 result $? 'over a background the sheet has its tooth alone unless it is asked for'
 on_paper preset --preset fluidymation --paper none &&
-    on_paper preset-zero --preset fluidymation --paper none --granulation 0 --load 0 --pigments 0 &&
-    on_paper preset-play --preset fluidymation --paper none --pigments 1 &&
+    on_paper preset-zero --preset fluidymation --paper none --granulation 0 --wash 0 --hue 0 &&
+    on_paper preset-play --preset fluidymation --paper none --hue 6 &&
     same sheet/preset1.png sheet/preset-zero1.png && ! same sheet/preset1.png sheet/preset-play1.png
 result $? 'the presets of the papers have even paint'
+on_paper wash --wash 2 --hue 7.2 && on_paper older --load 0.4 --pigments 0.1 && same_paint wash &&
+    same sheet/wash1.png sheet/older1.png && ! same sheet/wash1.png sheet/auto1.png
+result $? 'washes are composing, in the older words as well'
 
 # What is written opens as it looks.
 if "$program" whole -s 01 -q -f 1 -o 'open/w%d.ora' >out 2>err; then

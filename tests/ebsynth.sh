@@ -37,7 +37,7 @@ paint lazy --preset lazyfluids --ebsynth fluid && sh fluid/run.sh >out 2>&1 &&
     [ "$(weights fluid 1)" = 'style 1 alpha 3 segment 100' ] &&
     [ "$(weights fluid 2)" = 'style 1 alpha 3 segment 100 past 0.2 past-alpha 0.6' ]
 result $? 'those of LazyFluids, too'
-paint back --preset fluidymation --merge --ebsynth patch --tint keep --paper none --load 0 --pigments 0 &&
+paint back --preset fluidymation --merge --ebsynth patch --tint keep --paper none --wash 0 --hue 0 &&
     [ "$(python3 "$tests/ebsynth.py" back/w_0003.png 34 28)" = '20 123 200' ]
 result $? 'and what it has painted is composed as ours is'
 

@@ -249,7 +249,7 @@ static void colour_of_play(const uint8_t fill[3], int play, uint8_t colour[3], u
     FlColouring how = {.paper = {255, 255, 255},
                        .medium = FL_MEDIUM_BODY,
                        .play = play ? plays : NULL,
-                       .pigments = .1f};
+                       .turn = {-.3f, 0, .4f}};
     memcpy(how.fill, fill, 3);
     g_autofree uint8_t *rgba = colours_of_amounts(&how);
     memcpy(colour, rgba + 4 * FL_AMOUNT_ONE, 3);
@@ -258,20 +258,17 @@ static void colour_of_play(const uint8_t fill[3], int play, uint8_t colour[3], u
         bare[c] = (uint8_t)(255 - (255 - rgba[c]) * rgba[3] / 255);
 }
 
-static void two_pigments_turn_the_middle_channel(void)
+static void two_pigments_turn_the_hue(void)
 {
-    const uint8_t orange[3] = {240, 140, 30}, grey[3] = {128, 128, 128};
-    uint8_t red[3], plain[3], yellow[3], bare[3];
+    const uint8_t orange[3] = {240, 140, 30};
+    uint8_t red[3], plain[3], green[3], bare[3];
     colour_of_play(orange, 64, red, bare);
     g_assert_true(bare[0] == 255 && bare[1] == 255 && bare[2] == 255);
     colour_of_play(orange, 0, plain, bare);
-    colour_of_play(orange, -64, yellow, bare);
-    g_assert_true(red[0] == plain[0] && red[2] == plain[2] && yellow[0] == plain[0]);
-    g_assert_cmpint(red[1], <, plain[1] - 8);
-    g_assert_cmpint(yellow[1], >, plain[1] + 8);
-    colour_of_play(grey, 64, red, bare);
-    colour_of_play(grey, 0, plain, bare);
-    g_assert_true(red[0] > plain[0] && red[1] == plain[1] && red[2] < plain[2]); // warm
+    colour_of_play(orange, -32, green, bare);
+    g_assert_true(red[1] == plain[1] && green[1] == plain[1]);
+    g_assert_true(red[0] == 255 && red[2] < plain[2] * 3 / 4);
+    g_assert_true(green[0] < plain[0] * 9 / 10 && green[2] > plain[2] * 11 / 10);
 }
 
 static void on_its_paper_every_medium_looks_the_same(void)
@@ -439,8 +436,7 @@ int main(int argc, char **argv)
     g_test_add_func("/colourise/bare-paper-is-transparent-and-thin-paint-is-thin",
                     bare_paper_is_transparent_and_thin_paint_is_thin);
     g_test_add_func("/colourise/more-paint-never-hides-less", more_paint_never_hides_less);
-    g_test_add_func("/colourise/two-pigments-turn-the-middle-channel",
-                    two_pigments_turn_the_middle_channel);
+    g_test_add_func("/colourise/two-pigments-turn-the-hue", two_pigments_turn_the_hue);
     g_test_add_func("/colourise/on-its-paper-every-medium-looks-the-same",
                     on_its_paper_every_medium_looks_the_same);
     g_test_add_func("/colourise/light-paint-stands-over-a-dark-plate",

@@ -3,7 +3,6 @@
 #include "base/noise.h"
 #include "compose/granulation.h"
 #include "compose/ink.h"
-#include "compose/unevenness.h"
 #include "delta_e.h"
 #include "io/png.h"
 #include "scratch.h"
@@ -317,29 +316,6 @@ static void wet_paint_settles_and_dry_paint_catches(void)
     g_assert_true(flat[0] == 1024 && flat[1] == 5 && flat[2] == -1);
 }
 
-static void load_moves_along_with_its_region(void)
-{
-    g_autofree int16_t *here = g_new(int16_t, 200 * 150), *there = g_new(int16_t, 200 * 150);
-    const FlUneven a = {5, {100, 75, 1, 0}, 20000, 1}, b = {5, {137, 92, 1, 0}, 20000, 1};
-    const FlArea area = {{0, 0, 200, 150}, NULL}, moved = {{37, 17, 200, 150}, NULL};
-    double sum = 0;
-    int least = FL_AMOUNTS, most = 0;
-    for (int i = 0; i < 200 * 150; i++)
-        here[i] = there[i] = 1024;
-    fl_load_unevenly(&a, .3f, &area, here);
-    fl_load_unevenly(&b, .3f, &moved, there);
-    g_assert_cmpmem(here, 200 * 150 * 2, there, 200 * 150 * 2);
-    for (int i = 0; i < 200 * 150; i++)
-        sum += here[i], least = MIN(least, here[i]), most = MAX(most, here[i]);
-    g_assert_cmpint(least, <, 960);
-    g_assert_cmpint(most, >, 1080);
-    g_assert_cmpfloat_with_epsilon(sum / (200 * 150), 1024, 110);
-    const FlUneven dot = {5, {100, 75, 1, 0}, 390, 1}; // one touch of the brush
-    int16_t one[1] = {1024};
-    fl_load_unevenly(&dot, 1, &(FlArea){{90, 70, 1, 1}, NULL}, one);
-    g_assert_cmpint(one[0], ==, 1024);
-}
-
 /** Cells that are remembered between calls, and points that are left out, change nothing. */
 static void noise_is_a_function_of_place_alone(void)
 {
@@ -371,24 +347,6 @@ static void noise_of_a_row_is_that_of_its_places(void)
     }
 }
 
-static void load_is_the_same_in_a_part_of_the_area(void)
-{
-    enum { PART_PX = 90 };
-    const FlUneven where = {.key = 3, .anchor = {0, 0, 1, 0}, .area = 1e4, .scale = 1};
-    FlColumns row[PART_PX];
-    int16_t whole[PART_PX * PART_PX], part[PART_PX * PART_PX];
-    const FlRect box = {40, 30, PART_PX, PART_PX};
-    for (int y = 0; y < PART_PX; y++)
-        row[y] = y % 29 < 5 ? (FlColumns){y / 2, y / 2 + y % 29 * 7} : (FlColumns){0, 0};
-    for (int p = 0; p < PART_PX * PART_PX; p++)
-        whole[p] = part[p] = FL_AMOUNT_ONE;
-    fl_load_unevenly(&where, 1, &(FlArea){box, NULL}, whole);
-    fl_load_unevenly(&where, 1, &(FlArea){box, row}, part);
-    for (int y = 0; y < PART_PX; y++)
-        for (int x = row[y].first; x < row[y].last; x++)
-            g_assert_cmpint(part[y * PART_PX + x], ==, whole[y * PART_PX + x]);
-}
-
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -410,9 +368,6 @@ int main(int argc, char **argv)
     g_test_add_func("/paper/granulation-keeps-the-tone", granulation_keeps_the_tone);
     g_test_add_func("/paper/wet-paint-settles-and-dry-paint-catches",
                     wet_paint_settles_and_dry_paint_catches);
-    g_test_add_func("/paper/load-moves-along-with-its-region", load_moves_along_with_its_region);
-    g_test_add_func("/paper/load-is-the-same-in-a-part-of-the-area",
-                    load_is_the_same_in_a_part_of_the_area);
     g_test_add_func("/paper/noise-of-a-row-is-that-of-its-places",
                     noise_of_a_row_is_that_of_its_places);
     g_test_add_func("/paper/noise-is-a-function-of-place-alone",

@@ -1,10 +1,10 @@
 /* The paint simulation: what each stage conserves, the colours, and recipes. */
+#include "compose/kubelka_munk.h"
 #include "style/adapt.h"
 #include "style/write_style.h"
 #include "threads.h"
 #include "watercolour/brush.h"
 #include "watercolour/fine_sheet.h"
-#include "watercolour/kubelka_munk.h"
 #include "watercolour/simulate.h"
 #include "watercolour/stages.h"
 

@@ -3,9 +3,9 @@
 #include <math.h>
 #include <stddef.h>
 
-static float linear(uint8_t v)
+static float linear(float level)
 {
-    const float s = v / 255.0f;
+    const float s = level / 255;
     return s <= 0.04045f ? s / 12.92f : powf((s + 0.055f) / 1.055f, 2.4f);
 }
 
@@ -14,10 +14,9 @@ static float lab_curve(float t)
     return t > 216.0f / 24389 ? cbrtf(t) : (24389.0f / 27 * t + 16) / 116;
 }
 
-/** CIE 1976 L*a*b* of an sRGB colour, D65. */
-static void to_lab(const uint8_t rgb[3], float lab[3])
+void fl_lab(const float level[3], float lab[3])
 {
-    const float r = linear(rgb[0]), g = linear(rgb[1]), b = linear(rgb[2]);
+    const float r = linear(level[0]), g = linear(level[1]), b = linear(level[2]);
     const float x = lab_curve((0.4124f * r + 0.3576f * g + 0.1805f * b) / 0.9505f);
     const float y = lab_curve(0.2126f * r + 0.7152f * g + 0.0722f * b);
     const float z = lab_curve((0.0193f * r + 0.1192f * g + 0.9505f * b) / 1.089f);
@@ -28,9 +27,10 @@ static void to_lab(const uint8_t rgb[3], float lab[3])
 
 float fl_colour_difference(const uint8_t a[3], const uint8_t b[3])
 {
+    const float from[3] = {a[0], a[1], a[2]}, to[3] = {b[0], b[1], b[2]};
     float x[3], y[3];
-    to_lab(a, x);
-    to_lab(b, y);
+    fl_lab(from, x);
+    fl_lab(to, y);
     const float l = x[0] - y[0], u = x[1] - y[1], v = x[2] - y[2];
     return sqrtf(l * l + u * u + v * v);
 }

@@ -3,7 +3,7 @@
 #include "base/row_kernels.h"
 #include "compose/colour_law.h"
 #include "compose/layer_blend.h"
-#include "compose/unevenness.h"
+#include "compose/wash.h"
 
 #include <math.h>
 #include <string.h>
@@ -47,28 +47,11 @@ typedef struct Fill {
     uint8_t rgb[3];
     bool known; // of an entry in a table of them
     FlColourLaw law;
-    int32_t turn[3]; // density that each channel gains where the second pigment prevails by one
     uint8_t least[FL_AMOUNTS / LEAST_STEP]; // the greatest of the least alphas up to a step
     int n_least;                            // of them are known: most paint is far from the last
     int turn_at;                            // the amount at which channels turn
     uint8_t least_there;                    // the least alpha at turn_at
 } Fill;
-
-/* Only the middle channel moves, so that orange goes to yellow and red, sky blue to cyan and
- * violet: brightness and purity stay. Greys go from warm to cold. */
-static void turns_of(const uint8_t rgb[3], float pigments, int32_t turn[3])
-{
-    static const float of_grey[3] = {-.28f, 0, .34f};
-    const int most = MAX(MAX(rgb[0], rgb[1]), rgb[2]), least = MIN(MIN(rgb[0], rgb[1]), rgb[2]);
-    const float range = (float)(most - least);
-    const float grey = CLAMP(1 - 3 * range / (float)MAX(most, 1), 0, 1);
-    for (int c = 0; c < 3; c++) {
-        const float middle =
-            range > 0 ? 5 * (float)(most - rgb[c]) * (float)(rgb[c] - least) / (range * range) : 0;
-        const float turned = (1 - grey) * middle + grey * of_grey[c];
-        turn[c] = (int32_t)lrintf(pigments * turned * 1.442695f * FL_DENSITY_ONE);
-    }
-}
 
 static uint8_t least_alpha_at(const Fill *fill, const FlColouring *colouring,
                               const FlTransfer *scale, int amount)
@@ -85,7 +68,6 @@ static void fill_init(Fill *fill, const FlInk *ink, const FlColouring *colouring
     fill->known = true;
     fill->n_least = 0;
     fl_colour_law_init(&fill->law, rgb, colouring->paper, ink->spread);
-    turns_of(rgb, colouring->pigments, fill->turn);
     fill->turn_at = fl_colour_law_turn(&fill->law);
     fill->least_there = least_alpha_at(fill, colouring, scale, fill->turn_at);
 }
@@ -101,15 +83,14 @@ static int least_up_to(Fill *fill, const FlColouring *colouring, const FlTransfe
     return fill->least[step];
 }
 
-/* Thick paint shows the second pigment more. play: in 1 / FL_PLAY_ONE. */
-static void turn_hue(const Fill *fill, int amount, int play, uint8_t colour[3])
+/* play: in 1 / FL_PLAY_ONE; thin paint shows little of it. */
+static void turn_hue(const FlColouring *colouring, int amount, int play, uint8_t colour[3])
 {
-    const int thick = CLAMP(amount - FL_AMOUNT_ONE, -FL_AMOUNT_ONE, FL_AMOUNT_ONE * 3 / 2);
-    const int n = CLAMP(play + thick * 22 / FL_AMOUNT_ONE, -102, 102); // .35, 1.6 of FL_PLAY_ONE
-    const int64_t share = (int64_t)n * MIN(amount, FL_AMOUNT_ONE * 6 / 5);
+    const float share = (float)(play * MIN(amount, FL_AMOUNT_ONE * 13 / 10)) /
+                        (FL_PLAY_ONE * FL_AMOUNT_ONE) * 1.442695f * FL_DENSITY_ONE;
     for (int c = 0; c < 3; c++) {
-        const int64_t density = fill->turn[c] * share / (FL_PLAY_ONE * FL_AMOUNT_ONE);
-        const int factor = fl_density_level((int32_t)(FL_DENSITY_ONE + density)); // 128 * 255: one
+        const int32_t density = FL_DENSITY_ONE + (int32_t)lrintf(colouring->turn[c] * share);
+        const int factor = fl_density_level(density); // 128 * 255: one
         colour[c] = (uint8_t)MIN((colour[c] * factor + 64 * 255) / (128 * 255), 255);
     }
 }
@@ -132,19 +113,18 @@ static Look look_of(Fill *fill, const FlColouring *colouring, const FlTransfer *
     return look;
 }
 
-static void colour_look(const Fill *fill, const FlColouring *colouring, const FlTransfer *scale,
-                        Look look, int amount, int play, uint8_t rgba[4])
+static void colour_look(const FlColouring *colouring, const FlTransfer *scale, Look look,
+                        int amount, int play, uint8_t rgba[4])
 {
     if (colouring->play)
-        turn_hue(fill, amount, play, look.colour);
+        turn_hue(colouring, amount, play, look.colour);
     fl_unblend(scale, look.colour, colouring->paper, look.opacity, rgba);
 }
 
 static void colour_amount(Fill *fill, const FlColouring *colouring, const FlTransfer *scale,
                           int amount, int play, uint8_t rgba[4])
 {
-    colour_look(fill, colouring, scale, look_of(fill, colouring, scale, amount), amount, play,
-                rgba);
+    colour_look(colouring, scale, look_of(fill, colouring, scale, amount), amount, play, rgba);
 }
 
 /** One fill for the whole region: each amount that it has is looked up. */
@@ -191,14 +171,15 @@ static int most_amount(const int16_t *amounts, const FlArea *area)
     return most;
 }
 
-#define PLAYS 64 // as many plays of pigments are told apart: one in four
+#define PLAYS 128 // as many plays of pigments are told apart: one in two
+#define AS_ONE 4  // amounts that look alike where pigments play
 
 /** The same where pigments play: each pair of an amount and a play is looked up once it was met. */
 static void colour_flat_play(const FlInk *ink, const FlColouring *colouring,
                              const FlTransfer *scale, const int16_t *amounts, const FlArea *area,
                              uint8_t *rgba)
 {
-    const size_t n_amounts = (size_t)(most_amount(amounts, area) + 1);
+    const size_t n_amounts = (size_t)(most_amount(amounts, area) / AS_ONE + 1);
     const size_t n = n_amounts * PLAYS;
     g_autofree uint32_t *colours = g_new(uint32_t, n); // set for the pairs in `met`
     g_autofree bool *met = g_new0(bool, n);
@@ -213,15 +194,14 @@ static void colour_flat_play(const FlInk *ink, const FlColouring *colouring,
             if (amounts[i] < 0)
                 continue;
             const int play = (colouring->play[i] + 128) * PLAYS / 256;
-            const size_t at = (size_t)play * n_amounts + (size_t)amounts[i];
+            const int some = amounts[i] / AS_ONE, amount = some * AS_ONE;
+            const size_t at = (size_t)play * n_amounts + (size_t)some;
             if (!met[at]) {
                 uint8_t of[4];
-                Look *look = &looks[amounts[i]];
-                if (!seen[amounts[i]])
-                    *look = look_of(&fill, colouring, scale, amounts[i]);
-                seen[amounts[i]] = true;
-                colour_look(&fill, colouring, scale, *look, amounts[i], play * 256 / PLAYS - 126,
-                            of);
+                if (!seen[some])
+                    looks[some] = look_of(&fill, colouring, scale, amount);
+                seen[some] = true;
+                colour_look(colouring, scale, looks[some], amount, play * 256 / PLAYS - 128, of);
                 memcpy(&colours[at], of, 4);
                 met[at] = true;
             }

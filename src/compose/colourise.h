@@ -18,8 +18,8 @@ typedef struct FlColouring {
     const uint8_t *picture; // of the area's box, RGBA whose alpha is not read; or NULL
     uint8_t paper[3];       // the output's paper
     FlMedium medium;        // the opacity of the paint
-    const int8_t *play;     // of the box: fl_play_of_pigments(); NULL: paint of one pigment
-    float pigments;         // the strength of their play, 0..1
+    const int8_t *play;     // of the box: of fl_wash_lay(); NULL: paint of one pigment
+    float turn[3];          // ln of a factor, by channel, where the second pigment prevails by one
     bool linear;            // the layers will be blended in linear light
 } FlColouring;
 

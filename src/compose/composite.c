@@ -6,7 +6,7 @@
 #include "compose/exposure.h"
 #include "compose/paint_layer.h"
 #include "compose/underlay.h"
-#include "compose/unevenness.h"
+#include "compose/wash.h"
 #include <string.h>
 
 #define NO_DRAW (-1)
@@ -254,11 +254,10 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
             draw[composite->n_layers++] = r;
         }
     insert_stain(composite, input, draw);
-    const int n_regions = fl_drawing_regions(input->drawing);
-    g_autofree double *areas = g_new(double, MAX(n_regions, 1));
-    fl_region_areas_find(draws, n_regions, areas);
-    Stack stack = {composite, {input, cover, exposures, areas}, draw};
-    if (!(needs_all(&stack) ? resolve_all : resolve_in_turn)(&stack, error))
+    g_auto(FlWashes) washes = {0};
+    Stack stack = {composite, {input, cover, exposures, &washes}, draw};
+    if (!fl_washes_find(&washes, input, draws, error) ||
+        !(needs_all(&stack) ? resolve_all : resolve_in_turn)(&stack, error))
         return false;
     note_laid(composite, input, draw);
     return true;

@@ -1,11 +1,11 @@
 #include "compose/paint_layer.h"
 
 #include "base/alloc.h"
-#include "base/rng.h"
+#include "base/colour_difference.h"
 #include "compose/colourise.h"
 #include "compose/granulation.h"
 #include "compose/knockout.h"
-#include "compose/unevenness.h"
+#include "compose/pigments.h"
 #include "compose/visibility.h"
 #include <math.h>
 #include <string.h>
@@ -40,17 +40,66 @@ FlStacking fl_stacking_of(const FlPaintedRegion *painted)
     return is_cut_out(painted) && stacking != FL_STACKING_GLAZE ? FL_STACKING_OVER : stacking;
 }
 
-static FlColouring colouring_of(const FlComposeInput *input, const FlPaintedRegion *painted,
-                                const FlDraw *draw)
+#define PALETTE .85f // of the way from a fill to the nearest mixture of two pigments
+
+/* The fill of a region, whatever its fill is in this frame: the mixture for it never changes. */
+static const uint8_t *fill_of_film(const FlComposeInput *input, const FlPaintedRegion *painted)
 {
+    return painted->settings->has_colour ? painted->settings->colour
+                                         : fl_drawing_region(input->drawing, painted->region)->rgb;
+}
+
+/* The share by which a fill is the bare paper, 0..1, with a wash that is no more than a shadow. */
+static float whiteness_of(const FlColouring *colouring, const FlWash *wash)
+{
+    const float fill[3] = {colouring->fill[0], colouring->fill[1], colouring->fill[2]};
+    const float paper[3] = {colouring->paper[0], colouring->paper[1], colouring->paper[2]};
+    float lab[3], ground[3];
+    if (!wash || colouring->picture)
+        return 0;
+    fl_lab(fill, lab);
+    fl_lab(paper, ground);
+    const float chroma = sqrtf(lab[1] * lab[1] + lab[2] * lab[2]);
+    return CLAMP((lab[0] - 84) / 8, 0, 1) * CLAMP((16 - chroma) / 10, 0, 1) *
+           CLAMP((ground[0] - 75) / 10, 0, 1) * MIN(wash->style.wash, 1);
+}
+
+/* The two pigments of a fill, of which the second one prevails in the shadow; in white the shadow
+ * is a thin blue. */
+static void find_turn(FlColouring *colouring, const FlMixture *mixture, float hue, float white)
+{
+    static const float shadow[3] = {.235f, .185f, .105f};
+    const float fill[3] = {colouring->fill[0], colouring->fill[1], colouring->fill[2]};
+    float lab[3];
+    fl_lab(fill, lab);
+    const float chroma = sqrtf(lab[1] * lab[1] + lab[2] * lab[2]);
+    const float strength = (1 - white) * 3 * hue * CLAMP(.25f + chroma / 60, .3f, 1.25f);
+    for (int c = 0; c < 3; c++)
+        colouring->turn[c] = strength * mixture->turn[c] + white * shadow[c];
+}
+
+static FlColouring colouring_of(const FlLayerSources *sources, const FlPaintedRegion *painted,
+                                int r)
+{
+    const FlComposeInput *input = sources->input;
+    const FlDraw *draw = &sources->cover->draws->draw[r];
     const FlRegionSettings *t = painted->settings;
     FlColouring colouring = {.tint = t->tint,
                              .picture = t->has_colour ? NULL : draw->picture,
                              .medium = medium_of(input, painted),
-                             .pigments = (float)t->pigments,
                              .linear = input->linear};
     memcpy(colouring.fill, t->has_colour ? t->colour : draw->rgb, 3);
     memcpy(colouring.paper, input->background->paper, 3);
+    const FlWash *wash = fl_wash_of_draw(sources->washes, r);
+    if (!wash && t->palette == FL_PALETTE_DRAWING)
+        return colouring;
+    const uint8_t *film = fill_of_film(input, painted);
+    const FlMixture mixture = fl_mixture_of(film);
+    for (int c = 0; c < 3 && t->palette == FL_PALETTE_PAINT; c++)
+        colouring.fill[c] = (uint8_t)CLAMP(
+            lrintf((float)colouring.fill[c] + PALETTE * (float)(mixture.rgb[c] - film[c])), 0, 255);
+    if (wash)
+        find_turn(&colouring, &mixture, wash->style.hue, whiteness_of(&colouring, wash));
     return colouring;
 }
 
@@ -75,44 +124,25 @@ static int16_t *amounts_of(const FlLayerSources *sources, int r, const FlPainted
     return g_steal_pointer(&amounts);
 }
 
-/* The unevenness of a region, which does not depend on other regions. */
-static FlUneven uneven_of(const FlLayerSources *sources, const FlPaintedRegion *painted)
-{
-    const FlComposeInput *input = sources->input;
-    return (FlUneven){.key = fl_key(input->seed, g_str_hash(painted->name)),
-                      .anchor = painted->anchor,
-                      .area = sources->areas[painted->region],
-                      .scale = input->paper_px};
-}
-
-/* The grain of the paper and of the hand; not in paint that keeps the exemplar's own colours. */
-static void roughen(const FlLayerSources *sources, const FlPaintedRegion *painted,
-                    const FlArea *area, int16_t *amounts)
-{
-    const FlRegionSettings *t = painted->settings;
-    const FlUneven uneven = uneven_of(sources, painted);
-    if (t->tint == FL_TINT_KEEP)
-        return;
-    fl_load_unevenly(&uneven, (float)t->load, area, amounts);
-    fl_granulate(isnan(t->granulation) ? painted->style->granulation : (float)t->granulation,
-                 sources->input->tooth, area, amounts);
-}
-
-/* Colours a layer by its amounts of paint, once the grain of paper and hand is in them. */
-static bool colour_layer(FlLayer *layer, const FlLayerSources *sources,
+/* Colours a layer by its amounts of paint, once wash and the paper's grain are in them; not in
+ * paint that keeps the exemplar's own colours. */
+static bool colour_layer(FlLayer *layer, const FlLayerSources *sources, int r,
                          const FlPaintedRegion *painted, FlColouring *colouring, int16_t *amounts,
                          GError **error)
 {
+    const FlRegionSettings *t = painted->settings;
     const FlPaintedPart part = part_of(painted);
-    const FlUneven uneven = uneven_of(sources, painted);
+    const FlWash *wash = fl_wash_of_draw(sources->washes, r);
     g_autofree int8_t *play = NULL;
-    if (colouring->pigments > 0) {
+    if (wash) {
         if (!(play = fl_alloc_unset(fl_rect_pixels(layer->area.box), 1, "a layer", error)))
             return false;
-        fl_play_of_pigments(&uneven, &layer->area, amounts, play);
+        fl_wash_lay(wash, whiteness_of(colouring, wash), &layer->area, amounts, play);
     }
+    if (t->tint != FL_TINT_KEEP)
+        fl_granulate(isnan(t->granulation) ? painted->style->granulation : (float)t->granulation,
+                     sources->input->tooth, &layer->area, amounts);
     colouring->play = play;
-    roughen(sources, painted, &layer->area, amounts);
     fl_colourise(painted->style->ink, colouring, &part, amounts, &layer->area, layer->rgba);
     colouring->play = NULL;
     return true;
@@ -136,7 +166,7 @@ static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
                         const FlPaintedRegion *painted, int exposure, GError **error)
 {
     const FlDraw *draw = &sources->cover->draws->draw[r];
-    FlColouring colouring = colouring_of(sources->input, painted, draw);
+    FlColouring colouring = colouring_of(sources, painted, r);
     const FlRect box = layer->area.box;
     g_autofree int16_t *amounts = amounts_of(sources, r, painted, exposure, error);
     uint8_t *knockout = amounts ? fl_alloc_scratch(fl_rect_pixels(box), 1, "a layer", error) : NULL;
@@ -149,7 +179,7 @@ static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
                      fl_drawing_height(drawing), MAX(border_px, 1), asked_medium(painted),
                      darkness_of(&colouring), knockout, error))
         return false;
-    return colour_layer(layer, sources, painted, &colouring, amounts, error);
+    return colour_layer(layer, sources, r, painted, &colouring, amounts, error);
 }
 
 /* Paint with alpha of its own fades out by that, beyond its shape: the layer of a grown one,
@@ -179,7 +209,7 @@ static bool paint_cut_out(FlLayer *layer, const FlLayerSources *sources, int r,
                           const FlPaintedRegion *painted, int exposure, GError **error)
 {
     const FlDraw *draw = &sources->cover->draws->draw[r];
-    FlColouring colouring = colouring_of(sources->input, painted, draw);
+    FlColouring colouring = colouring_of(sources, painted, r);
     const FlPaintedPart part = part_of(painted);
     const FlRect box = layer->area.box;
     g_autofree int16_t *amounts = fl_alloc(fl_rect_pixels(box), sizeof *amounts, "a layer", error);
@@ -198,7 +228,7 @@ static bool paint_cut_out(FlLayer *layer, const FlLayerSources *sources, int r,
     const bool keep = colouring.tint == FL_TINT_KEEP;
     fl_colourise_amounts(painted->style->ink, keep ? FL_EXPOSURE_ONE : exposure, &part,
                          layer->coverage, &layer->area, amounts);
-    return colour_layer(layer, sources, painted, &colouring, amounts, error);
+    return colour_layer(layer, sources, r, painted, &colouring, amounts, error);
 }
 
 void fl_layer_begin(FlLayer *layer, const FlLayerSources *sources, int r)

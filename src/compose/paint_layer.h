@@ -4,14 +4,15 @@
 
 #include "compose/compose_input.h"
 #include "compose/layers.h"
+#include "compose/wash.h"
 #include "cover/cover_map.h"
 
 /** The sources of a frame's layers; borrowed. */
 typedef struct FlLayerSources {
     const FlComposeInput *input;
-    const FlCover *cover; // of the frame
-    const int *exposures; // of each painted region
-    const double *areas;  // of each region, px
+    const FlCover *cover;   // of the frame
+    const int *exposures;   // of each painted region
+    const FlWashes *washes; // of the frame
 } FlLayerSources;
 
 /** The stacking of a region. Cut out paint hides by its own alpha alone, and does not knock out. */

@@ -23,6 +23,7 @@ typedef struct FlStyleInstance {
     FlMedium medium;
     float granulation; // as of fl_granulate()
     FlFrontStyle front;
+    FlWashStyle wash;
     float enlarged;  // px of the drawing per px of its pictures
     float border_px; // of its rim, px of the drawing as it is painted
     uint8_t paper[3];

@@ -42,6 +42,7 @@ typedef struct FlRegion {
     char *name;       // unique, made of [a-z0-9-], stable for the same input; used in file names
     char *label;      // the layer label path without frame numbers; "" without labels
     char *paint;      // "#rrggbb", "gradient", "image": of most of its area
+    uint8_t rgb[3];   // the same as a colour; of what is not flat the mean
     int n_present;    // frames in which it is drawn
     int first_frame;  // index of the first of them
     double area_px;   // mean area over those frames
@@ -51,11 +52,13 @@ typedef struct FlRegion {
     char *class_word; // a class that all of its shapes have, and no others; NULL: no such class
 } FlRegion;
 
-/** A place that moves along with a region and turns with the region, so that unevenness of its
- * paint can follow. */
+/** A place that moves along with a region and turns with the region, so that its wash can follow.
+ */
 typedef struct FlAnchor {
-    float x, y;         // px of the picture, within FL_POSE_MOST_PX
-    float cosine, sine; // of its turn since the first frame
+    float x, y;           // px of the picture, within FL_POSE_MOST_PX
+    float cosine, sine;   // of its turn since the first frame
+    float rest_x, rest_y; // where it was in that, the first that has the region
+    float side;           // of a square as large as the region's shapes, px; the same in all frames
 } FlAnchor;
 
 /** A sequence and its regions. What it keeps of pictures does not grow with the film. */

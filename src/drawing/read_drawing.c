@@ -2,6 +2,7 @@
 #include "drawing/drawing_data.h"
 #include "drawing/region_identity.h"
 #include "drawing/survey.h"
+#include <math.h>
 #include <string.h>
 
 #define MOST_ROUNDS 8 // in which frames are left out
@@ -34,8 +35,11 @@ void fl_drawing_halve(FlDrawing *drawing)
             for (int side = 0; side < 4; side++)
                 frame->step[i].box[side] /= 2;
         }
-        for (guint r = 0; r < drawing->regions->len; r++)
-            frame->anchor[r].x /= 2, frame->anchor[r].y /= 2;
+        for (guint r = 0; r < drawing->regions->len; r++) {
+            FlAnchor *anchor = &frame->anchor[r];
+            anchor->x /= 2, anchor->y /= 2, anchor->side /= 2;
+            anchor->rest_x /= 2, anchor->rest_y /= 2;
+        }
     }
 }
 
@@ -155,6 +159,7 @@ static void describe(FlDrawing *drawing, const FlSurvey *survey, const GArray *g
             .name = g_strdup(names[r]),
             .label = label_path(fl_strings_get(&survey->strings, group->label)),
             .paint = paint_text(group),
+            .rgb = {group->rgb[0], group->rgb[1], group->rgb[2]},
             .paintable = is_paintable(group, rules),
             .rule = group->rule,
         };
@@ -293,6 +298,10 @@ static void remember(FlDrawing *drawing, FlSurvey *survey)
         frame->canvas = survey->frame[t].canvas;
         frame->origin = t;
         frame->anchor = anchors[t];
+        for (guint r = 0; r < drawing->regions->len; r++) {
+            const FlRegion *region = fl_drawing_region(drawing, (int)r);
+            frame->anchor[r].side = (float)sqrt(region->area_px / MAX(region->n_leaves, 1));
+        }
         for (int i = 0; survey->frame[t].files && survey->frame[t].files[i]; i++)
             g_hash_table_add(drawing->files, g_strdup(survey->frame[t].files[i]));
         frame->whole = g_steal_pointer(&survey->frame[t].whole);

@@ -178,8 +178,8 @@ static void move(FlAnchor *anchor, const Fit *fit)
     const FlPoint turned = times(turn, arm);
     const FlPoint axis =
         unit_of(times(turn, (FlPoint){(double)anchor->cosine, (double)anchor->sine}));
-    *anchor =
-        (FlAnchor){within(to.x + turned.x), within(to.y + turned.y), (float)axis.x, (float)axis.y};
+    anchor->x = within(to.x + turned.x), anchor->y = within(to.y + turned.y);
+    anchor->cosine = (float)axis.x, anchor->sine = (float)axis.y;
 }
 
 static Leaf *leaf_of(const Follower *f, const FlSurveyPart *part)
@@ -237,7 +237,8 @@ static void begin(Follower *f, int region, FlAnchor *anchor)
     if (f->begun[region] || means->weight <= 0)
         return;
     const FlPoint middle = mean_of(means, means->to);
-    *anchor = (FlAnchor){within(middle.x), within(middle.y), 1, 0};
+    *anchor = (FlAnchor){.x = within(middle.x), .y = within(middle.y), .cosine = 1};
+    anchor->rest_x = anchor->x, anchor->rest_y = anchor->y;
     f->begun[region] = true;
 }
 

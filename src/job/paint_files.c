@@ -28,13 +28,15 @@ static FlRect area_of(const FlPaintedRegion *painted, FlPaintArea area)
     return whole ? (FlRect){0, 0, painted->width, painted->height} : painted->rect;
 }
 
-#define ANCHOR "Anchor" // x, y, cosine and sine of the region's anchor
+#define ANCHOR "Anchor" // the numbers of the region's anchor, in the order of their fields
+#define ANCHOR_NUMBERS (sizeof(FlAnchor) / sizeof(float))
 
 static char *anchor_text(const FlAnchor *anchor)
 {
-    const float value[] = {anchor->x, anchor->y, anchor->cosine, anchor->sine};
+    float value[ANCHOR_NUMBERS];
     GString *text = g_string_new(NULL);
-    for (size_t k = 0; k < G_N_ELEMENTS(value); k++) {
+    memcpy(value, anchor, sizeof value);
+    for (size_t k = 0; k < ANCHOR_NUMBERS; k++) {
         char number[G_ASCII_DTOSTR_BUF_SIZE];
         g_ascii_formatd(number, sizeof number, "%.9g", (double)value[k]);
         g_string_append_printf(text, k ? " %s" : "%s", number);
@@ -42,26 +44,31 @@ static char *anchor_text(const FlAnchor *anchor)
     return g_string_free(text, FALSE);
 }
 
-/* True if the numbers, which a file may hold in any size, make an anchor. */
-static bool is_anchor(const float value[4])
+/* True if numbers, which a file may hold in any size, make an anchor. */
+static bool is_anchor(const FlAnchor *anchor)
 {
-    const bool near = fabsf(value[0]) <= FL_POSE_MOST_PX && fabsf(value[1]) <= FL_POSE_MOST_PX;
-    return near && fabsf(value[2]) <= 1 && fabsf(value[3]) <= 1;
+    const float place[] = {anchor->x, anchor->y, anchor->rest_x, anchor->rest_y, anchor->side};
+    bool good = fabsf(anchor->cosine) <= 1 && fabsf(anchor->sine) <= 1 && anchor->side >= 0;
+    for (size_t k = 0; k < G_N_ELEMENTS(place); k++)
+        good &= fabsf(place[k]) <= FL_POSE_MOST_PX; // not of what is no number
+    return good;
 }
 
 /* Files of other programs have no anchor; then it stays unchanged. */
 static void load_anchor(const char *path, FlAnchor *anchor)
 {
     g_autofree char *text = fl_png_text(path, ANCHOR);
-    float value[4];
+    float value[ANCHOR_NUMBERS];
+    FlAnchor read;
     char *at = text, *end = NULL;
-    for (size_t k = 0; at && k < G_N_ELEMENTS(value); k++, at = end) {
+    for (size_t k = 0; at && k < ANCHOR_NUMBERS; k++, at = end) {
         value[k] = (float)g_ascii_strtod(at, &end);
         if (end == at)
             return;
     }
-    if (at && is_anchor(value))
-        *anchor = (FlAnchor){value[0], value[1], value[2], value[3]};
+    memcpy(&read, value, sizeof read);
+    if (at && is_anchor(&read))
+        *anchor = read;
 }
 
 bool fl_paint_file_save(const FlPaintedRegion *painted, FlPaintArea area, const char *path,

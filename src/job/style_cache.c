@@ -116,7 +116,8 @@ static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
                                   .enlarged = factor,
                                   .medium = style->medium,
                                   .granulation = style->granulation,
-                                  .front = style->front};
+                                  .front = style->front,
+                                  .wash = style->wash};
     memcpy(instance->paper, style->paper, sizeof instance->paper);
     FlParams packed = *params;
     packed.style_window = window_of(params, style);

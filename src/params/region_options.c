@@ -130,10 +130,11 @@ static bool set_preset(FlRegionSettings *settings, const char *value, GError **e
                                                                   : settings->engine;
     settings->motion = ours ? FL_MOTION_AUTO : FL_MOTION_MASKS;
     settings->granulation = ours ? plain.granulation : 0;
-    settings->load = ours ? plain.load : 0;
+    settings->wash = ours ? plain.wash : 0;
+    settings->hue = ours ? plain.hue : 0;
+    settings->load = settings->pigments = NAN;
     settings->front = ours ? plain.front : 0;
     settings->stain = ours ? plain.stain : 0;
-    settings->pigments = ours ? plain.pigments : 0;
     settings->line = ours ? plain.line : FL_LINE_PLAIN;
     return true;
 }

@@ -47,6 +47,12 @@ typedef enum FlTint {
     FL_TINT_KEEP, // the exemplar's own colours
 } FlTint;
 
+/** The colours that fills become. */
+typedef enum FlPalette {
+    FL_PALETTE_DRAWING, // the drawing's
+    FL_PALETTE_PAINT,   // nearly what two pigments on white paper mix to
+} FlPalette;
+
 /** Selects regions that are drawn unpainted. */
 typedef enum FlPassthrough {
     FL_PASSTHROUGH_AUTO, // strokes and shading are not
@@ -68,10 +74,13 @@ typedef struct FlRegionSettings {
     FlStacking stacking;
     FlMedium medium;    // FL_MEDIUM_AUTO: the style's, or what the output wants
     double granulation; // as of fl_granulate(); NAN: the style's
-    double load;        // unevenness of the amounts, 0..1
-    double pigments;    // play of the hue, 0..1
-    double front;       // fronts on the paper ahead of what moves, 0..2
-    double stain;       // stains behind the front, 0..1
+    double wash;        // of FlWashStyle, as those below; NAN: the style's
+    double light;       // the side on which the shadow lies, degrees; 90: below
+    double hue, passes, tide, pool, blooms;
+    double load, pigments; // older words: wash / 5 and hue / 72; NAN: not said
+    FlPalette palette;
+    double front; // fronts on the paper ahead of what moves, 0..2
+    double stain; // stains behind the front, 0..1
     FlEdges edges;
     FlLine line;   // of a region that is not painted
     int line_boil; // frames until it is drawn anew; 0: never
@@ -89,7 +98,7 @@ void fl_region_settings_clear(FlRegionSettings *settings);
 /**
  * Sets one thing from text: an option of FL_SCOPE_REGION; "scale" is read as style-scale. A preset
  * also sets the motion: the presets of the papers use the motion of masks only, and paint as the
- * synthesis makes it, without granulation, load, pigments and drawn lines. The engine LazyFluids
+ * synthesis makes it, without granulation, wash, hue and drawn lines. The engine LazyFluids
  * brings the parameters of the preset fluid, unless a preset chose the engine.
  *
  * A relative path of a style is taken from `folder`; NULL: the working directory.

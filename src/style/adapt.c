@@ -171,6 +171,7 @@ static FlStyle *new_like(const FlStyle *style)
                      .medium = style->medium,
                      .granulation = style->granulation,
                      .front = style->front,
+                     .wash = style->wash,
                      .smoothness = style->smoothness};
     memcpy(out->paper, style->paper, sizeof out->paper);
     return out;

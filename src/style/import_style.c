@@ -77,6 +77,7 @@ static void set_facts(Import *import, const FlRecording *source)
     style->scale = 1;
     style->granulation = FL_GRANULATION;
     style->front = (FlFrontStyle)FL_FRONT_DEFAULTS;
+    style->wash = (FlWashStyle)FL_WASH_DEFAULTS;
 }
 
 static bool store_frames(FlStyle *style, GPtrArray *pictures, GError **error)

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Sections of style.ini. */
-typedef enum Section { NOWHERE, STYLE, FRONT, OTHER } Section;
+typedef enum Section { NOWHERE, STYLE, FRONT, WASH, OTHER } Section;
 
 typedef enum KeyType { TEXT, NUMBER, COLOUR, MEDIUM } KeyType;
 
@@ -40,6 +40,12 @@ static const struct Key {
     {"line", NUMBER, offsetof(FlStyle, front.line), 0, 1, 0, FRONT},
     {"fingers", NUMBER, offsetof(FlStyle, front.fingers), 0, 1, 0, FRONT},
     {"granulation", NUMBER, offsetof(FlStyle, front.granulation), 0, 1, 0, FRONT},
+    {"wash", NUMBER, offsetof(FlStyle, wash.wash), 0, 2, 0, WASH},
+    {"passes", NUMBER, offsetof(FlStyle, wash.passes), 0, 2, 0, WASH},
+    {"tide", NUMBER, offsetof(FlStyle, wash.tide), 0, 2, 0, WASH},
+    {"pool", NUMBER, offsetof(FlStyle, wash.pool), 0, 2, 0, WASH},
+    {"blooms", NUMBER, offsetof(FlStyle, wash.blooms), 0, 2, 0, WASH},
+    {"hue", NUMBER, offsetof(FlStyle, wash.hue), 0, 12, 0, WASH},
 };
 
 /* The reader's state. */
@@ -104,9 +110,11 @@ static bool read_value(FlStyle *style, const struct Key *key, const char *value,
 /* A section of another name is a tool's own, such as a recipe's. */
 static bool read_section(void *data, const char *name, int line, GError **error)
 {
-    static const char *const sections[] = {"style", "front", NULL};
+    static const char *const sections[] = {"style", "front", "wash", NULL};
     Reader *reader = data;
-    reader->place = strcmp(name, "style") == 0 ? STYLE : strcmp(name, "front") == 0 ? FRONT : OTHER;
+    reader->place = STYLE;
+    while (reader->place < OTHER && strcmp(name, sections[reader->place - STYLE]) != 0)
+        reader->place++;
     const char *meant = reader->place == OTHER ? fl_suggest(name, sections) : NULL;
     return !meant || wrong(error, "[%s]: expected [%s]", name, meant);
 }
@@ -119,7 +127,7 @@ static bool read_key(void *data, const char *name, const char *value, int line, 
     if (reader->place == NOWHERE)
         return wrong(error, "“%s” stands above the first section: expected [style]", name);
     for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
-        if ((keys[i].section == FRONT ? FRONT : STYLE) != reader->place)
+        if (MAX(keys[i].section, STYLE) != reader->place)
             continue;
         names[n++] = keys[i].name;
         if (strcmp(name, keys[i].name) != 0)
@@ -144,29 +152,24 @@ bool fl_manifest_read(FlStyle *style, const char *path, GError **error)
     return fl_key_file_read(path, &calls, error);
 }
 
-/* Returns: true if the fronts are those of styles that say nothing of them. */
-static bool has_plain_front(const FlFrontStyle *front)
+/* A section of numbers, unless it is as in styles without one. */
+static void append_section(const FlStyle *style, Section section, const char *name, GString *text)
 {
-    const FlFrontStyle plain = FL_FRONT_DEFAULTS;
-    return front->width == plain.width && front->stain == plain.stain &&
-           front->film == plain.film && front->soft == plain.soft && front->base == plain.base &&
-           front->line == plain.line && front->fingers == plain.fingers &&
-           front->granulation == plain.granulation;
-}
-
-/* The section of fronts, unless it is as in styles without one. */
-static void append_front(const FlStyle *style, GString *text)
-{
+    const FlStyle plain = {.front = FL_FRONT_DEFAULTS, .wash = FL_WASH_DEFAULTS};
     char number[G_ASCII_DTOSTR_BUF_SIZE];
-    if (has_plain_front(&style->front))
-        return;
-    g_string_append(text, "\n[front]\n");
+    g_autoptr(GString) lines = g_string_new(NULL);
+    bool same = true;
     for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
+        if (keys[i].section != section)
+            continue;
         const float *field = (const void *)((const char *)style + keys[i].offset);
-        if (keys[i].section == FRONT)
-            g_string_append_printf(text, "%s = %s\n", keys[i].name,
-                                   g_ascii_formatd(number, sizeof number, "%.4g", *field));
+        const float *usual = (const void *)((const char *)&plain + keys[i].offset);
+        same &= *field == *usual;
+        g_string_append_printf(lines, "%s = %s\n", keys[i].name,
+                               g_ascii_formatd(number, sizeof number, "%.4g", *field));
     }
+    if (!same)
+        g_string_append_printf(text, "\n[%s]\n%s", name, lines->str);
 }
 
 char *fl_manifest_text(const FlStyle *style)
@@ -200,6 +203,7 @@ char *fl_manifest_text(const FlStyle *style)
     if (!(style->guessed & FL_GUESS_PAPER))
         g_string_append_printf(text, "paper = #%02x%02x%02x\n", style->paper[0], style->paper[1],
                                style->paper[2]);
-    append_front(style, text);
+    append_section(style, FRONT, "front", text);
+    append_section(style, WASH, "wash", text);
     return g_string_free(text, FALSE);
 }

@@ -25,6 +25,22 @@ typedef struct FlFrontStyle {
         .fingers = 0.55f, .granulation = 0.45f                                                     \
     }
 
+/** The wash that a style's paint leaves in a shape; see fluidy-style(5). 0 turns a part of it off.
+ */
+typedef struct FlWashStyle {
+    float wash;   // strength of all but hue, 0..2
+    float passes; // of passes of the brush, 0..2
+    float tide;   // of drying lines, 0..2
+    float pool;   // of paint that gathers at lower edges, 0..2
+    float blooms; // of blooms, 0..2
+    float hue;    // wander between two pigments, CIE76, 0..12
+} FlWashStyle;
+
+#define FL_WASH_DEFAULTS                                                                           \
+    {                                                                                              \
+        .wash = 1, .passes = 1, .tide = 1, .pool = 1, .blooms = 1, .hue = 3.6f                     \
+    }
+
 /** A style in memory. Frames follow each other without padding, rows from the top. */
 typedef struct FlStyle {
     char *name;      // the folder's name, or style.ini's
@@ -39,6 +55,7 @@ typedef struct FlStyle {
     FlMedium medium;   // FL_MEDIUM_AUTO: not given
     float granulation; // of its paint on paper: see fl_granulate()
     FlFrontStyle front;
+    FlWashStyle wash;
     float smoothness; // of its recording: see fl_style_smoothness()
     uint8_t *rgb;     // n_frames * height * width * 3, sRGB
     uint8_t *mask;    // n_frames * height * width, coverage 0..255

@@ -22,6 +22,7 @@ static FlRecipe *defaults(void)
         .scale = 1,
         .granulation = FL_GRANULATION,
         .front = FL_FRONT_DEFAULTS,
+        .wash = FL_WASH_DEFAULTS,
         .steps = {60, 60},
         .warm_up = 1,
         .seed = 1,
@@ -129,6 +130,17 @@ static void read_front(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_float(lines, "line", 0, 1, &front->line);
     fl_keylines_float(lines, "fingers", 0, 1, &front->fingers);
     fl_keylines_float(lines, "granulation", 0, 1, &front->granulation);
+}
+
+static void read_wash(FlKeyLines *lines, FlRecipe *recipe)
+{
+    FlWashStyle *wash = &recipe->wash;
+    fl_keylines_float(lines, "wash", 0, 2, &wash->wash);
+    fl_keylines_float(lines, "passes", 0, 2, &wash->passes);
+    fl_keylines_float(lines, "tide", 0, 2, &wash->tide);
+    fl_keylines_float(lines, "pool", 0, 2, &wash->pool);
+    fl_keylines_float(lines, "blooms", 0, 2, &wash->blooms);
+    fl_keylines_float(lines, "hue", 0, 12, &wash->hue);
 }
 
 static void read_paper(FlKeyLines *lines, FlRecipe *recipe)
@@ -264,6 +276,8 @@ static bool read_group(FlKeyLines *lines, int group, FlRecipe *recipe, GError **
         read_recipe(lines, recipe);
     else if (strcmp(name, "front") == 0)
         read_front(lines, recipe);
+    else if (strcmp(name, "wash") == 0)
+        read_wash(lines, recipe);
     else if (strcmp(name, "paper") == 0)
         read_paper(lines, recipe);
     else if (strcmp(name, "flow") == 0)
@@ -276,7 +290,7 @@ static bool read_group(FlKeyLines *lines, int group, FlRecipe *recipe, GError **
         read_event(lines, recipe);
     else
         fl_keylines_complain(lines, "",
-                             "is not a group of a recipe: expected recipe, front, paper, "
+                             "is not a group of a recipe: expected recipe, front, wash, paper, "
                              "flow, dust, pigment NAME or event NAME");
     return fl_keylines_end(lines, error);
 }

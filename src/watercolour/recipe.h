@@ -2,6 +2,7 @@
 #ifndef FLUIDY_WATERCOLOUR_RECIPE_H
 #define FLUIDY_WATERCOLOUR_RECIPE_H
 
+#include "compose/pigments.h"
 #include "style/style_folder.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -10,14 +11,6 @@
 #define FL_MAX_PIGMENTS 4
 #define FL_MAX_POINTS 16
 #define FL_MAX_EVENTS 32
-
-/** A pigment [C97 §5, fig. 5]; per unit of thickness. */
-typedef struct FlPigment {
-    const char *name;
-    float absorption[3], scattering[3];   // K and S, > 0, per sRGB channel
-    float density, staining, granulation; // rho, omega > 0, gamma 0..1
-    float diffusion; // rate of spreading in standing water, cells^2 per step, 0..0.2
-} FlPigment;
 
 /** The sheet. Lengths in px of the finished frames. */
 typedef struct FlPaper {
@@ -100,6 +93,7 @@ typedef struct FlRecipe {
     float mask_threshold, mask_margin; // least thickness of paint; bare margin, px
     float mask_blur;                   // radius over which the thickness is averaged, px
     FlFrontStyle front;
+    FlWashStyle wash;
     FlPaper paper;
     FlFlow flow;
     FlDust dust;
@@ -107,9 +101,6 @@ typedef struct FlRecipe {
     FlPigment pigments[FL_MAX_PIGMENTS];
     FlEvent events[FL_MAX_EVENTS];
 } FlRecipe;
-
-/** The pigments of [C97 fig. 5] by name. Returns: static storage; NULL for an unknown name. */
-const FlPigment *fl_pigment_find(const char *name);
 
 /** Reads a recipe. Returns: NULL with FL_ERROR_INPUT, "FILE:LINE: what was wrong". */
 FlRecipe *fl_recipe_load(const char *path, GError **error);

@@ -1,8 +1,8 @@
 #include "watercolour/scan.h"
 
 #include "base/alloc.h"
+#include "compose/kubelka_munk.h"
 #include "guides/connected_parts.h"
-#include "watercolour/kubelka_munk.h"
 
 #include <math.h>
 #include <string.h>

@@ -72,6 +72,7 @@ static FlStyle *new_style(const FlRecipe *recipe, int size, const char *recipe_p
         .scale = recipe->scale / (float)size,
         .granulation = recipe->granulation,
         .front = recipe->front,
+        .wash = recipe->wash,
         .medium = fl_medium_of_word(recipe->medium),
     };
     memcpy(style->paper, recipe->paper.colour, sizeof style->paper);

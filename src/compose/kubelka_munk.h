@@ -1,6 +1,6 @@
 /* The colour of a layer of paint on paper [C97 §5]. */
-#ifndef FLUIDY_WATERCOLOUR_KUBELKA_MUNK_H
-#define FLUIDY_WATERCOLOUR_KUBELKA_MUNK_H
+#ifndef FLUIDY_COMPOSE_KUBELKA_MUNK_H
+#define FLUIDY_COMPOSE_KUBELKA_MUNK_H
 
 /** Reflectance and transmittance of a layer in one channel; 0..1. */
 typedef struct FlKmLayer {

@@ -1,5 +1,5 @@
 /* Kubelka-Munk in the hyperbolic form, arranged so that K = 0 and S = 0 need no division by 0. */
-#include "watercolour/kubelka_munk.h"
+#include "compose/kubelka_munk.h"
 
 #include <math.h>
 

@@ -1,0 +1,73 @@
+/* Washes: the light and shadow side, brush passes, drying lines, pools and blooms that wet paint
+ * leaves in a shape as a hand fills it, and the balance of its two pigments. */
+#ifndef FLUIDY_COMPOSE_WASH_H
+#define FLUIDY_COMPOSE_WASH_H
+
+#include "compose/compose_input.h"
+
+/** The slow fields from which a wash is computed. */
+typedef enum FlWashPlane {
+    FL_WASH_TONE,   // ln of the amount: light and shadow side, pools
+    FL_WASH_HUE,    // balance of the pigments, without lines
+    FL_WASH_PASS,   // place across the brush: each whole number is a pass
+    FL_WASH_CRISP,  // 1 where the edge of a pass is found, 0 where it is lost
+    FL_WASH_LINES,  // strength of passes, 0..1
+    FL_WASH_TIDE,   // distance from the drying line, px of the page; below 0 it is dry
+    FL_WASH_TIDES,  // strength of drying lines, 0..1
+    FL_WASH_BLOOM,  // distance from the rim of a bloom, px of the page; below 0 it is inside
+    FL_WASH_BLOOMS, // strength of blooms, 0..1
+    FL_WASH_PLANES,
+} FlWashPlane;
+
+/** The wash of all shapes of one fill in a frame: they are filled in one go, so that where they
+ * touch it is one. */
+typedef struct FlWash {
+    FlWashStyle style;            // its strengths
+    uint64_t key;                 // of the film's seed and the fill
+    float brush_px;               // width of a pass, px of the page
+    FlRect box;                   // px of the frame
+    int step;                     // px of the frame from point to point
+    int width, height;            // points; the first is at the corner of the box
+    float *plane[FL_WASH_PLANES]; // of width * height
+} FlWash;
+
+/** The washes of a frame. */
+typedef struct FlWashes {
+    int n;
+    FlWash *wash;
+    int *of_draw; // the index of each draw's wash; -1: it has none
+} FlWashes;
+
+/**
+ * Finds the washes of a frame, which depend on nothing but its shapes, whole as if no other shape
+ * lay over them, and on how far each has moved and turned since it was first seen.
+ * FL_ERROR_NO_MEMORY.
+ */
+bool fl_washes_find(FlWashes *washes, const FlComposeInput *input, const FlDrawList *draws,
+                    GError **error);
+void fl_washes_clear(FlWashes *washes);
+
+/** The wash of a draw; NULL: it has none. */
+static inline const FlWash *fl_wash_of_draw(const FlWashes *washes, int draw)
+{
+    return washes->of_draw[draw] >= 0 ? &washes->wash[washes->of_draw[draw]] : NULL;
+}
+
+/** The strengths of the wash of a painted region: those of its settings, else its style's. */
+FlWashStyle fl_wash_style_of(const FlPaintedRegion *painted);
+
+#define FL_PLAY_ONE 64 // of the balance of two pigments
+
+/**
+ * Lays a wash over the amounts of paint of an area. white 0..1 is the share by which the paint is
+ * bare paper with a shadow: amounts are even, and the play is the shadow.
+ *
+ * play, of the box as amounts are, becomes the balance of two pigments: -2 to below 2, in 1 /
+ * FL_PLAY_ONE; where amounts are below 0 it is undefined.
+ */
+void fl_wash_lay(const FlWash *wash, float white, const FlArea *area, int16_t *amounts,
+                 int8_t *play);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlWashes, fl_washes_clear)
+
+#endif

@@ -1,0 +1,151 @@
+#include "base/density.h"
+#include "base/rng.h"
+#include "base/schedule.h"
+#include "compose/ink.h"
+#include "compose/wash.h"
+
+#include <math.h>
+
+#define LOADS 256     // of the brush, that repeat
+#define TONE_ONE 256  // steps of ln of a factor
+#define TONE_LEAST -2 // at 64 * 255 a factor is one, and 4 is the most
+#define TONES (TONE_ONE * 27 / 8)
+
+/* A wash, ready to be laid. */
+typedef struct Brush {
+    const FlWash *wash;
+    float white;
+    float load[LOADS + 1]; // of each pass, -1..1
+    uint16_t factor[TONES];
+} Brush;
+
+static void brush_init(Brush *brush, const FlWash *wash, float white)
+{
+    FlRng rng = {fl_key(wash->key, 1)};
+    brush->wash = wash, brush->white = white;
+    for (int k = 0; k < LOADS; k++)
+        brush->load[k] = 2 * fl_rng_float(&rng) - 1;
+    brush->load[LOADS] = brush->load[0];
+    for (int i = 0; i < TONES; i++) {
+        const float more = 1.442695f * ((float)i / TONE_ONE + TONE_LEAST);
+        brush->factor[i] = fl_density_level((int32_t)lrintf((2 - more) * FL_DENSITY_ONE));
+    }
+}
+
+static inline float clamp(float x, float low, float high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+static inline float smooth(float x)
+{
+    const float t = clamp(x, 0, 1);
+    return t * t * (3 - 2 * t);
+}
+
+/* Nearly e^-x, for x >= 0. */
+static inline float fall(float x)
+{
+    return 1 / (1 + x * (1 + x * (.5f + x * .16f)));
+}
+
+/* The values of the slow fields at a pixel. */
+typedef float Slow[FL_WASH_PLANES];
+
+/* A drying line: sharp towards what was dry, and a slope on its wet side. */
+static inline float tide_at(const Slow slow)
+{
+    const float away = slow[FL_WASH_TIDE];
+    return slow[FL_WASH_TIDES] * (away < 0 ? fall(-away * .45f) : fall(away * .045f));
+}
+
+/* Light inside, with a dark rim that is sharp outside. */
+static inline float bloom_at(const Slow slow)
+{
+    const float away = slow[FL_WASH_BLOOM], found = slow[FL_WASH_BLOOMS];
+    if (away > 12 || found <= 0)
+        return 0;
+    return away > 0 ? .30f * found * fall(.5f * away)
+                    : found * (.30f * fall(-away / 6) - .45f * smooth(-away / 30));
+}
+
+/* The ln of the factor on the amount, and the balance of the pigments, at a pixel. Lines meet and
+ * never cross: passes end at drying lines. */
+static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
+{
+    const FlWashStyle *style = &brush->wash->style;
+    const float pass = floorf(slow[FL_WASH_PASS]), part = slow[FL_WASH_PASS] - pass;
+    const int k = (int)pass & (LOADS - 1);
+    const float crisp = slow[FL_WASH_CRISP], width = .5f - .455f * crisp;
+    const float next = smooth((part - 1 + width) / width);
+    const float load = brush->load[k] + (brush->load[k + 1] - brush->load[k]) * next;
+    const float ridge = crisp * fall((1 - part) * brush->wash->brush_px / 7) * .7f;
+    const float tide = tide_at(slow), free = 1 - smooth(2.2f * tide);
+    *hue = slow[FL_WASH_HUE] + slow[FL_WASH_LINES] * .25f * load + .3f * tide;
+    return style->wash *
+           (slow[FL_WASH_TONE] +
+            1.4f * style->passes * slow[FL_WASH_LINES] *
+                (.15f * load * (.5f + .5f * free) + .24f * ridge * free) +
+            1.2f * style->tide *
+                (.36f * tide - .14f * slow[FL_WASH_TIDES] * smooth(slow[FL_WASH_TIDE] / 34)) +
+            style->blooms * bloom_at(slow));
+}
+
+static int amount_of(const Brush *brush, int amount, float tone)
+{
+    const int i = (int)((clamp(tone, TONE_LEAST, 1.37f) - TONE_LEAST) * TONE_ONE);
+    const uint32_t laid = ((uint32_t)amount * brush->factor[i] + 64 * 255 / 2) / (64 * 255);
+    const float even = .9f * FL_AMOUNT_ONE + .1f * (float)amount;
+    const float mixed = (float)laid + brush->white * (even - (float)laid);
+    return MIN((int)mixed, FL_AMOUNTS - 1);
+}
+
+/* Row y of the area between four points at a time. */
+static void lay_row(const Brush *brush, const FlArea *area, int y, int16_t *amounts, int8_t *play)
+{
+    const FlWash *wash = brush->wash;
+    const FlColumns span = fl_area_row(area, y);
+    const int step = wash->step;
+    const int top = CLAMP(area->box.y + y - wash->box.y, 0, (wash->height - 1) * step - 1);
+    const size_t row = (size_t)(top / step) * (size_t)wash->width;
+    const float ty = (float)(top % step) / (float)step;
+    for (int x = span.first; x < span.last;) {
+        const int left = CLAMP(area->box.x + x - wash->box.x, 0, (wash->width - 1) * step - 1);
+        const int i = left / step, end = MIN(span.last, x + step - left % step);
+        Slow slow, more;
+        for (int k = 0; k < FL_WASH_PLANES; k++) {
+            const float *upper = wash->plane[k] + row + (size_t)i, *lower = upper + wash->width;
+            const float a = upper[0] + (lower[0] - upper[0]) * ty;
+            const float b = upper[1] + (lower[1] - upper[1]) * ty;
+            more[k] = (b - a) / (float)step;
+            slow[k] = a + more[k] * (float)(left % step);
+        }
+        for (; x < end; x++) {
+            if (amounts[x] >= 0) {
+                float hue;
+                const float tone = tone_at(brush, slow, &hue);
+                const float side =
+                    wash->style.wash * slow[FL_WASH_TONE]; // lines look like dirt in white
+                const float shade = smooth((3.5f * side + .15f) / 1.5f);
+                hue += brush->white * (shade - hue);
+                amounts[x] = (int16_t)amount_of(brush, amounts[x], tone);
+                play[x] = (int8_t)(clamp(hue, -1.95f, 1.95f) * FL_PLAY_ONE);
+            }
+            for (int k = 0; k < FL_WASH_PLANES; k++)
+                slow[k] += more[k];
+        }
+    }
+}
+
+void fl_wash_lay(const FlWash *wash, float white, const FlArea *area, int16_t *amounts,
+                 int8_t *play)
+{
+    Brush brush;
+    brush_init(&brush, wash, white);
+#pragma omp parallel for schedule(dynamic,                                                         \
+                                  8) if (fl_schedule_worth_threads(fl_rect_pixels(area->box)))
+    for (int y = 0; y < area->box.height; y++) {
+        const size_t row = (size_t)y * (size_t)area->box.width;
+        lay_row(&brush, area, y, amounts + row, play + row);
+    }
+}

@@ -1,0 +1,361 @@
+/* Washes ride with their figures, are one where shapes of a fill touch, and keep the fill. */
+#include "base/colour_difference.h"
+#include "compose/ink.h"
+#include "compose/pigments.h"
+#include "compose/wash.h"
+#include "scratch.h"
+#include "threads.h"
+#include <math.h>
+
+#define W 400
+#define H 300
+#define BARE -99.f // beyond all washes
+#define BLOB                                                                                       \
+    "<path fill='#5bb7d8' d='M-100 0 C-90 -90 70 -110 95 -20 C110 60 30 95 -20 90 C-80 85 -105 "   \
+    "50 -100 0z'"
+
+/* folder: an empty one, which must stay. */
+static FlDrawing *open_film(const char *folder, const char *const *frames)
+{
+    for (int t = 0; frames[t]; t++) {
+        g_autofree char *name = g_strdup_printf("%d.svg", t + 1);
+        g_autofree char *page =
+            g_strdup_printf("<svg xmlns='http://www.w3.org/2000/svg' width='%d' "
+                            "height='%d'>%s</svg>",
+                            W, H, frames[t]);
+        g_autofree char *path = g_build_filename(folder, name, NULL);
+        g_assert_true(g_file_set_contents(path, page, -1, NULL));
+    }
+    const char *const inputs[] = {folder, NULL};
+    const FlDrawingOptions options = {
+        .inputs = inputs, .n_inputs = 1, .missing = FL_MISSING_ERROR, .key = FL_KEY_ID};
+    GError *error = NULL;
+    FlDrawing *drawing = fl_drawing_open(&options, NULL, &error);
+    g_assert_no_error(error);
+    return drawing;
+}
+
+/* The ln of the factor on the amount of each pixel of a frame, BARE where there is no paint. */
+typedef struct Tones {
+    float tone[W * H];
+    int8_t play[W * H];
+} Tones;
+
+static Tones *lay_frame(const FlDrawing *drawing, int frame, const FlWashStyle *style)
+{
+    const int n = fl_drawing_regions(drawing);
+    FlRegionSettings settings;
+    fl_region_settings_init(&settings);
+    const FlStyleInstance instance = {.wash = *style};
+    g_autofree FlPaintedRegion *region = g_new0(FlPaintedRegion, n);
+    g_autofree const FlPaintedRegion **painted = g_new0(const FlPaintedRegion *, n);
+    g_autofree int *painted_of = g_new0(int, n);
+    for (int r = 0; r < n; r++) {
+        region[r] = (FlPaintedRegion){.region = r,
+                                      .name = fl_drawing_region(drawing, r)->name,
+                                      .settings = &settings,
+                                      .style = &instance,
+                                      .from = FL_FROM_ENGINE,
+                                      .anchor = fl_drawing_anchor(drawing, r, frame)};
+        painted[r] = &region[r], painted_of[r] = r;
+    }
+    const FlComposeInput input = {.drawing = drawing,
+                                  .painted_of = painted_of,
+                                  .n_painted = n,
+                                  .painted = painted,
+                                  .seed = 1,
+                                  .width = W,
+                                  .height = H,
+                                  .paper_px = 1};
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, frame, NULL);
+    g_auto(FlWashes) washes = {0};
+    g_assert_true(fl_washes_find(&washes, &input, draws, NULL));
+    Tones *tones = g_new0(Tones, 1);
+    for (int i = 0; i < W * H; i++)
+        tones->tone[i] = BARE;
+    for (int r = 0; r < draws->n; r++) {
+        const FlWash *wash = fl_wash_of_draw(&washes, r);
+        const FlArea *area = &draws->draw[r].area;
+        const size_t pixels = fl_rect_pixels(area->box);
+        g_autofree int16_t *amounts = g_new(int16_t, pixels);
+        g_autofree int8_t *play = g_new0(int8_t, pixels);
+        for (size_t i = 0; i < pixels; i++)
+            amounts[i] = draws->draw[r].coverage[i] ? 1024 : -1;
+        if (wash)
+            fl_wash_lay(wash, 0, area, amounts, play);
+        for (size_t i = 0; i < pixels; i++) {
+            const int x = area->box.x + (int)i % area->box.width,
+                      y = area->box.y + (int)i / area->box.width;
+            if (draws->draw[r].coverage[i] < 128)
+                continue;
+            tones->tone[y * W + x] = logf((float)amounts[i] / 1024);
+            tones->play[y * W + x] = play[i];
+        }
+    }
+    fl_region_settings_clear(&settings);
+    return tones;
+}
+
+static const FlWashStyle plain = FL_WASH_DEFAULTS;
+
+static int compare_floats(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Least, median and greatest tone of a frame. */
+static void spread_of(const Tones *tones, float spread[3])
+{
+    g_autofree float *all = g_new(float, W *H);
+    int n = 0;
+    for (int i = 0; i < W * H; i++)
+        if (tones->tone[i] > BARE)
+            all[n++] = tones->tone[i];
+    g_assert_cmpint(n, >, 0);
+    qsort(all, (size_t)n, sizeof *all, compare_floats);
+    spread[0] = all[n / 50], spread[1] = all[n / 2], spread[2] = all[n - 1 - n / 50];
+}
+
+static void the_fill_stays_the_fill(void)
+{
+    const char *const frames[] = {BLOB " id='b' transform='translate(200 150)'/>", NULL};
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
+    g_autofree Tones *tones = lay_frame(drawing, 0, &plain);
+    float spread[3];
+    spread_of(tones, spread);
+    g_test_message("ln of amounts from %.2f, median %.2f, to %.2f", spread[0], spread[1],
+                   spread[2]);
+    g_assert_cmpfloat(fabsf(spread[1]), <, .06f); // 1 L*
+    g_assert_cmpfloat(spread[0], <, -.2f);
+    g_assert_cmpfloat(spread[2], >, .2f);
+    double upper = 0, lower = 0;
+    for (int i = 0; i < W * H; i++)
+        if (tones->tone[i] > BARE)
+            *(i < W * H / 2 ? &upper : &lower) += (double)tones->tone[i];
+    g_assert_cmpfloat(lower, >, upper); // the light comes from above
+}
+
+static double correlation(const float *a, const float *b, int n)
+{
+    double sum[5] = {0};
+    for (int i = 0; i < n; i++) {
+        const double x = (double)a[i], y = (double)b[i];
+        sum[0] += x, sum[1] += y, sum[2] += x * x, sum[3] += y * y, sum[4] += x * y;
+    }
+    return (sum[4] - sum[0] * sum[1] / n) /
+           sqrt((sum[2] - sum[0] * sum[0] / n) * (sum[3] - sum[1] * sum[1] / n));
+}
+
+/* How alike the tones of two frames are at the places of a figure that moves by (x, y) and turns.
+ */
+static double likeness(const Tones *first, const Tones *now, double x, double y, double degrees)
+{
+    const double c = cos(degrees * G_PI / 180), s = sin(degrees * G_PI / 180);
+    g_autofree float *a = g_new(float, W *H), *b = g_new(float, W *H);
+    int n = 0;
+    for (int i = 0; i < W * H; i++) {
+        const double dx = i % W - 120, dy = i / W - 150;
+        const int u = (int)lrint(120 + x + c * dx - s * dy),
+                  v = (int)lrint(150 + y + s * dx + c * dy);
+        if (u < 0 || u >= W || v < 0 || v >= H || first->tone[i] <= BARE ||
+            now->tone[v * W + u] <= BARE)
+            continue;
+        a[n] = first->tone[i], b[n++] = now->tone[v * W + u];
+    }
+    return correlation(a, b, n);
+}
+
+static void it_rides_with_its_figure(void)
+{
+    enum { FRAMES = 24 };
+    char *frames[FRAMES + 1] = {NULL};
+    for (int t = 0; t < FRAMES; t++)
+        frames[t] = g_strdup_printf(BLOB " id='b' transform='translate(%.2f %.2f) rotate(%.2f)'/>",
+                                    120 + 7.0 * t, 150 + .7 * t, -1.0 * t);
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film(folder, (const char *const *)frames);
+    const FlWashStyle lines = {.wash = 1, .passes = 1, .tide = 1};
+    g_autofree Tones *first = lay_frame(drawing, 0, &lines);
+    for (int t = 1; t < FRAMES; t += 11) {
+        g_autofree Tones *now = lay_frame(drawing, t, &lines);
+        const double along = likeness(first, now, 7.0 * t, .7 * t, -1.0 * t);
+        const double page = likeness(first, now, 0, 0, 0);
+        g_test_message("frame %d: correlation %.3f along the figure, %.3f on the page", t, along,
+                       page);
+        g_assert_cmpfloat(along, >, .95);
+        g_assert_cmpfloat(along, >, page);
+    }
+    for (int t = 0; t < FRAMES; t++)
+        g_free(frames[t]);
+}
+
+static void what_stands_still_does_not_change(void)
+{
+    const char *const still = BLOB " id='still' transform='translate(120 150)'/>";
+    char *frames[4] = {NULL};
+    for (int t = 0; t < 3; t++)
+        frames[t] = g_strdup_printf("%s<circle id='over' fill='#c03020' cx='%d' cy='150' r='50'/>",
+                                    still, 40 + 60 * t);
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film(folder, (const char *const *)frames);
+    g_autofree Tones *first = lay_frame(drawing, 0, &plain);
+    g_autofree Tones *last = lay_frame(drawing, 2, &plain);
+    int n = 0;
+    for (int i = 0; i < W * H; i++) {
+        const int x = i % W, y = i / W;
+        const bool over = hypot(x - 40, y - 150) < 53 || hypot(x - 160, y - 150) < 53;
+        if (over || first->tone[i] <= BARE)
+            continue;
+        g_assert_cmpfloat(first->tone[i], ==, last->tone[i]);
+        g_assert_cmpint(first->play[i], ==, last->play[i]);
+        n++;
+    }
+    g_assert_cmpint(n, >, 5000);
+    for (int t = 0; t < 3; t++)
+        g_free(frames[t]);
+}
+
+/* The mean step of tone over a seam at x, without the slope beside it. */
+static double step_at(const Tones *tones, int x)
+{
+    double sum = 0;
+    for (int y = 60; y < 210; y++) {
+        const float *row = tones->tone + y * W;
+        sum += (double)fabsf(row[x] - row[x - 1] -
+                             .5f * (row[x + 1] - row[x] + row[x - 1] - row[x - 2]));
+    }
+    return sum / 150;
+}
+
+static void touching_shapes_of_one_fill_are_one_wash(void)
+{
+    const char *const one[] = {
+        "<rect id='a' fill='#5bb7d8' x='50' y='50' width='150' height='200'/>"
+        "<rect id='b' fill='#5bb7d8' x='200' y='50' width='150' height='200'/>",
+        NULL};
+    const char *const two[] = {
+        "<rect id='a' fill='#5bb7d8' x='50' y='50' width='150' height='200'/>"
+        "<rect id='b' fill='#c03020' x='200' y='50' width='150' height='200'/>",
+        NULL};
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(Scratch) folder_of_two = scratch_make();
+    g_autoptr(FlDrawing) same = open_film(folder, one);
+    g_autoptr(FlDrawing) other = open_film(folder_of_two, two);
+    g_assert_cmpint(fl_drawing_regions(same), ==, 2);
+    g_autofree Tones *a = lay_frame(same, 0, &plain), *b = lay_frame(other, 0, &plain);
+    g_test_message("step of ln: %.3f within a fill, %.3f between fills", step_at(a, 200),
+                   step_at(b, 200));
+    g_assert_cmpfloat(step_at(a, 200), <, .05); // 1 L*
+    g_assert_cmpfloat(step_at(b, 200), >, .1);
+}
+
+/* Parts of a fill that move apart: no line where one's wash passes into the other's. */
+static void parts_that_move_apart_are_mixed(void)
+{
+    const char *const frames[] = {
+        "<rect id='a' fill='#5bb7d8' x='50' y='50' width='150' height='200'/>"
+        "<rect id='b' fill='#5bb7d8' x='200' y='50' width='150' height='200'/>",
+        "<rect id='a' fill='#5bb7d8' x='50' y='50' width='150' height='200'/>"
+        "<rect id='b' fill='#5bb7d8' x='200' y='20' width='150' height='200'/>",
+        NULL};
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
+    g_autofree Tones *tones = lay_frame(drawing, 1, &plain);
+    g_test_message("step of ln: %.3f", step_at(tones, 200));
+    g_assert_cmpfloat(step_at(tones, 200), <, .05);
+}
+
+static void dots_and_lines_have_none(void)
+{
+    const char *const frames[] = {
+        "<circle id='dot' fill='#5bb7d8' cx='60' cy='60' r='7'/>"
+        "<rect id='line' fill='#5bb7d8' x='20' y='200' width='350' height='6'/>",
+        NULL};
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
+    g_autofree Tones *tones = lay_frame(drawing, 0, &plain);
+    float spread[3];
+    spread_of(tones, spread);
+    g_assert_cmpfloat(spread[2] - spread[0], <, .02f);
+}
+
+static void threads_and_parts_do_not_matter(void)
+{
+    const char *const frames[] = {BLOB " id='b' transform='translate(180 150)'/>"
+                                       "<circle id='c' fill='#c03020' cx='330' cy='90' r='60'/>",
+                                  NULL};
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
+    const int threads = omp_get_max_threads();
+    omp_set_num_threads(1);
+    g_autofree Tones *one = lay_frame(drawing, 0, &plain);
+    omp_set_num_threads(3);
+    g_autofree Tones *three = lay_frame(drawing, 0, &plain);
+    omp_set_num_threads(threads);
+    g_assert_cmpmem(one->tone, sizeof one->tone, three->tone, sizeof three->tone);
+    g_assert_cmpmem(one->play, sizeof one->play, three->play, sizeof three->play);
+}
+
+/* ---- pigments -------------------------------------------------------------------------------- */
+
+static void pigments_mix_to_the_fill(void)
+{
+    static const uint8_t fills[][3] = {{0x4f, 0x9d, 0x3f}, {0xe0, 0xca, 0xb1}, {0x84, 0x83, 0x83},
+                                       {0xb0, 0x4e, 0xba}, {0x5b, 0xb7, 0xd8}, {0xa4, 0x63, 0x40}};
+    for (size_t k = 0; k < G_N_ELEMENTS(fills); k++) {
+        const FlMixture mixture = fl_mixture_of(fills[k]), again = fl_mixture_of(fills[k]);
+        const float off = fl_colour_difference(fills[k], mixture.rgb);
+        g_test_message("%s and %s: off by %.1f", mixture.pigment[0]->name, mixture.pigment[1]->name,
+                       (double)off);
+        g_assert_cmpfloat(off, <, 12);
+        g_assert_cmpmem(&mixture, sizeof mixture, &again, sizeof again);
+    }
+}
+
+/* What no paint can be becomes what it can: pure green is 5dbc35 or so. */
+static void the_palette_is_what_paint_can_be(void)
+{
+    const uint8_t green[3] = {0, 255, 0};
+    const FlMixture mixture = fl_mixture_of(green);
+    g_assert_true(mixture.rgb[0] > 40 && mixture.rgb[1] < 220 && mixture.rgb[1] > 150);
+}
+
+static void the_hue_turns_and_the_light_stays(void)
+{
+    static const uint8_t fills[][3] = {{0x4f, 0x9d, 0x3f}, {0xfd, 0xae, 0x5f}, {0x5b, 0xb7, 0xd8}};
+    for (size_t k = 0; k < G_N_ELEMENTS(fills); k++) {
+        const FlMixture mixture = fl_mixture_of(fills[k]);
+        float lab[2][3];
+        for (int side = 0; side < 2; side++) {
+            float level[3];
+            for (int c = 0; c < 3; c++)
+                level[c] = (float)fills[k][c] * expf((side ? -4.f : 4.f) * mixture.turn[c]);
+            fl_lab(level, lab[side]);
+        }
+        const float *a = lab[0], *b = lab[1];
+        g_test_message("from %.0f %.0f %.0f to %.0f %.0f %.0f", (double)a[0], (double)a[1],
+                       (double)a[2], (double)b[0], (double)b[1], (double)b[2]);
+        g_assert_cmpfloat(fabsf(a[0] - b[0]), <, 3);
+        g_assert_cmpfloat(hypotf(a[1] - b[1], a[2] - b[2]), >, 4);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/wash/the-fill-stays-the-fill", the_fill_stays_the_fill);
+    g_test_add_func("/wash/it-rides-with-its-figure", it_rides_with_its_figure);
+    g_test_add_func("/wash/what-stands-still-does-not-change", what_stands_still_does_not_change);
+    g_test_add_func("/wash/touching-shapes-of-one-fill-are-one-wash",
+                    touching_shapes_of_one_fill_are_one_wash);
+    g_test_add_func("/wash/parts-that-move-apart-are-mixed", parts_that_move_apart_are_mixed);
+    g_test_add_func("/wash/dots-and-lines-have-none", dots_and_lines_have_none);
+    g_test_add_func("/wash/threads-and-parts-do-not-matter", threads_and_parts_do_not_matter);
+    g_test_add_func("/pigments/they-mix-to-the-fill", pigments_mix_to_the_fill);
+    g_test_add_func("/pigments/the-palette-is-what-paint-can-be", the_palette_is_what_paint_can_be);
+    g_test_add_func("/pigments/the-hue-turns-and-the-light-stays",
+                    the_hue_turns_and_the_light_stays);
+    return g_test_run();
+}
