@@ -50,8 +50,8 @@ static uint8_t *frame_again(const Style *style, int t)
                                  .y_16 = (uint16_t)(16 * (p / width)),
                                  .frame = (int16_t)t};
     fl_blocks_init_full(&blocks, width, height);
-    fl_enlarge(style->exemplar->enlargement, &nnf, &blocks, (FlRect){0, 0, width, height},
-               &enlarged);
+    fl_enlarge(fl_enlargement_level(style->exemplar->enlargement), &nnf, &blocks,
+               (FlRect){0, 0, width, height}, &enlarged);
     return rgb;
 }
 
@@ -89,8 +89,8 @@ static void an_enlarged_picture_is_that_of_its_field_in_detail(void)
     g_assert_true(fl_nnf_init(&nnf, half->width, half->height, NULL));
     make_pieces(&nnf, half);
     fl_blocks_init_full(&blocks, nnf.width, nnf.height);
-    fl_enlarge(style.exemplar->enlargement, &nnf, &blocks, (FlRect){0, 0, nnf.width, nnf.height},
-               &enlarged);
+    fl_enlarge(fl_enlargement_level(style.exemplar->enlargement), &nnf, &blocks,
+               (FlRect){0, 0, nnf.width, nnf.height}, &enlarged);
     fl_vote(&nnf, NULL, half, &kernels, 4, 3, colour, voted);
     double sum = 0;
     int n = 0;

@@ -1,12 +1,13 @@
 #include "open_svg.h"
-#include "svg/geometry.h"
+#include "svg/svg_frame.h"
+#include "svg/transform.h"
 #include "worker/raster.h"
 #include <math.h>
 
 static FlOutlines *outlines_of(const char *content, double width, double height, FlSvg **opened)
 {
     g_autoptr(FlSvg) svg = open_svg_of(content);
-    FlOutlines *outlines = fl_outlines_new(svg, (FlPageSize){width, height});
+    FlOutlines *outlines = fl_svg_outlines(svg, (FlPageSize){width, height});
     if (opened)
         *opened = g_steal_pointer(&svg);
     return outlines;

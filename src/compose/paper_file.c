@@ -58,8 +58,8 @@ static void means_of(const FlPicture *tile, float mean[3])
         mean[c] = fmaxf(1, (float)((double)sum[c] / (double)n));
 }
 
-static void fill(FlPaperSheet *sheet, const FlPicture *tile, const float *fine, float deviation,
-                 float relief)
+static void fill(const FlPaperPlanes *sheet, const FlPicture *tile, const float *fine,
+                 float deviation, float relief)
 {
     float mean[3];
     means_of(tile, mean);
@@ -79,7 +79,7 @@ static void fill(FlPaperSheet *sheet, const FlPicture *tile, const float *fine, 
         }
 }
 
-bool fl_paper_file_fill(FlPaperSheet *sheet, const char *path, float scale, float relief,
+bool fl_paper_file_fill(const FlPaperPlanes *sheet, const char *path, float scale, float relief,
                         GError **error)
 {
     g_autoptr(FlPicture) tile = fl_picture_read(path, error);

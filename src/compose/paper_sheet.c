@@ -6,7 +6,6 @@
 #include "base/picture.h"
 #include "base/rng.h"
 #include "base/row_kernels.h"
-#include "compose/paper_file.h"
 #include "guides/blur.h"
 #include "io/picture_file.h"
 #include "io/sink.h"
@@ -159,10 +158,12 @@ static bool fill_sheet(FlPaperSheet *sheet, const FlPaperChoice *choice, int kin
                        GError **error)
 {
     const FlPaperPlace place = {fl_paper_grain((FlPaperKind)MAX(kind, 0)), choice->seed, scale};
-    return sheet_alloc(sheet, error) &&
-           (kind >= 0
-                ? make_kind(sheet, &place, (float)choice->relief, error)
-                : fl_paper_file_fill(sheet, choice->paper, scale, (float)choice->relief, error));
+    if (!sheet_alloc(sheet, error))
+        return false;
+    const FlPaperPlanes planes = {sheet->width, sheet->height, sheet->factor, sheet->tooth};
+    return kind >= 0
+               ? make_kind(sheet, &place, (float)choice->relief, error)
+               : fl_paper_file_fill(&planes, choice->paper, scale, (float)choice->relief, error);
 }
 
 /* The means over squares of n px of a sheet that is n times as large. */

@@ -4,8 +4,7 @@
 #define FLUIDY_COMPOSE_PAPER_SHEET_H
 
 #include "base/spill.h"
-#include "base/tooth.h"
-#include "compose/paper_height.h"
+#include "compose/paper_file.h"
 
 /** Which paper. */
 typedef struct FlPaperChoice {
@@ -15,8 +14,6 @@ typedef struct FlPaperChoice {
     uint64_t seed;
     int boil; // frames after which another sheet is taken; 0: never
 } FlPaperChoice;
-
-#define FL_PAPER_ONE 32768 // a factor of one
 
 /**
  * A sheet of paper, made once for a film. Every frame has the same part of it; with boil, parts

@@ -10,7 +10,6 @@
 #include "base/alloc.h"
 #include "base/rect.h"
 #include "base/row_kernels.h"
-#include "guides/guides.h"
 #include <math.h>
 #include <string.h>
 

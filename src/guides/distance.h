@@ -6,6 +6,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#define FL_INSIDE 128
+
 /**
  * Signed distance to the contour in px, positive inside, in linear time.
  *

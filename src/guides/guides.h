@@ -2,6 +2,7 @@
 #ifndef FLUIDY_GUIDES_GUIDES_H
 #define FLUIDY_GUIDES_GUIDES_H
 
+#include "guides/distance.h"
 #include "guides/outline.h"
 #include "guides/resting_parts.h"
 #include <fluidy/error.h>
@@ -60,8 +61,6 @@ static inline FlRect fl_guides_rect(const FlGuides *guides)
 
 #define FL_MOTION_ONE 16384
 #define FL_MOTION_UNKNOWN INT32_MIN // of both components: where motion is unknown, or no mask
-
-#define FL_INSIDE 128
 
 /** Tells if all pixels of a region have the same motion. */
 typedef enum FlUniformMotion {

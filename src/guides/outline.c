@@ -2,7 +2,6 @@
 
 #include "base/alloc.h"
 #include "guides/distance.h"
-#include "guides/guides.h"
 #include <string.h>
 
 static bool any_inside(const uint8_t *coverage, size_t n)

@@ -2,7 +2,7 @@
 #ifndef FLUIDY_JOB_PAINT_FILES_H
 #define FLUIDY_JOB_PAINT_FILES_H
 
-#include "job/plan.h"
+#include "job/region_plan.h"
 
 /** The file of a region's paint that ebsynth writes, below the folder of --ebsynth. */
 #define FL_EBSYNTH_OUTPUT "{region}/out_%04d.png"

@@ -110,6 +110,17 @@ bool fl_plan_rasterise(FlPlan *plan, GError **error);
 /** Looks which regions are hidden, without masks: it draws as many frames as show all regions. */
 bool fl_plan_find_hidden(FlPlan *plan, GError **error);
 
+/* ---- the steps of planning, in their order; each fills its part of the plan ---------------- */
+
+/** Names the output and looks whether it is free, before the drawing is read. */
+bool fl_plan_find_output(FlPlan *plan, GError **error);
+
+/** Chooses the regions that are painted and their settings; the drawing is open. */
+bool fl_plan_find_regions(FlPlan *plan, GError **error);
+
+/** The style and engine of each painted region, once the size of the picture is known. */
+bool fl_plan_choose_styles(FlPlan *plan, GError **error);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPlan, fl_plan_free)
 
 #endif

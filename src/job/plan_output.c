@@ -1,4 +1,4 @@
-#include "job/plan_steps.h"
+#include "job/plan.h"
 
 #include "drawing/open_drawing.h"
 #include "io/pattern.h"

@@ -1,4 +1,4 @@
-#include "job/plan_steps.h"
+#include "job/plan.h"
 
 #include "base/limits.h"
 #include "base/suggest.h"

@@ -1,4 +1,4 @@
-#include "job/plan_steps.h"
+#include "job/plan.h"
 
 #include "base/page.h"
 #include "job/moved_paint.h"

@@ -9,7 +9,6 @@
 #include "guides/half_guides.h"
 #include "inspect/dump.h"
 #include "inspect/ebsynth.h"
-#include "render/painter_guides.h"
 #include "worker/messages.h"
 
 #define WET_IN_DRAFTS 3 // frames from which wet paper is known

@@ -3,7 +3,6 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "job/paint_files.h"
-#include "render/painter_guides.h"
 #include <math.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "render/painter_guides.h"
+#include "render/painter.h"
 
 #include "base/alloc.h"
 #include "base/windows.h"

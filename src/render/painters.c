@@ -7,7 +7,6 @@
 #include "guides/flow_file.h"
 #include "inspect/report.h"
 #include "io/pattern.h"
-#include "render/painter_guides.h"
 #include <math.h>
 
 /* The memory of a render follows from the sizes, so a shortage is known before anything is made. */

@@ -2,7 +2,12 @@
 #ifndef FLUIDY_SVG_CSS_CONDITION_H
 #define FLUIDY_SVG_CSS_CONDITION_H
 
-#include "svg/css_sheet.h"
+#include <stdbool.h>
+
+/** The page that conditions such as @media (min-width: 500px) ask about. */
+typedef struct FlCssPage {
+    double width, height; // px
+} FlCssPage;
 
 /** Returns: true if a light colour screen that shows the page matches a list of queries. */
 bool fl_css_media_matches(const char *query, const FlCssPage *page);

@@ -84,15 +84,6 @@ static const xmlNode *shown_by(const xmlNode *use)
 static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *units,
                         const FlAffine *map, int depth);
 
-static FlAffine transform_of(const xmlNode *node)
-{
-    FlAffine m = FL_AFFINE_NONE;
-    g_autoptr(xmlChar) text = fl_attribute(node, "transform");
-    if (text)
-        fl_affine_parse((const char *)text, &m);
-    return m;
-}
-
 /** Adds what a group or <use> shows. */
 static void add_children(Bounds *bounds, const xmlNode *node, const FlCssUnits *units,
                          const FlAffine *map, int depth)
@@ -110,7 +101,7 @@ static void add_children(Bounds *bounds, const xmlNode *node, const FlCssUnits *
          child = shown ? NULL : child->next) {
         if (child->type != XML_ELEMENT_NODE || (!shown && fl_is_undrawn(child)))
             continue;
-        const FlAffine own = transform_of(child), all = fl_affine_multiply(&inner, &own);
+        const FlAffine own = fl_affine_of(child), all = fl_affine_multiply(&inner, &own);
         add_element(bounds, child, units, &all, depth + 1);
     }
 }

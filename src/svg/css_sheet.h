@@ -2,6 +2,7 @@
 #ifndef FLUIDY_SVG_CSS_SHEET_H
 #define FLUIDY_SVG_CSS_SHEET_H
 
+#include "svg/css_condition.h"
 #include "svg/css_selector.h"
 
 typedef struct FlCssDeclaration {
@@ -26,11 +27,6 @@ typedef struct FlCssKeyframe {
 
 /** All sheets of a document. */
 typedef struct FlCssSheet FlCssSheet;
-
-/** The page that conditions such as @media (min-width: 500px) ask about. */
-typedef struct FlCssPage {
-    double width, height; // px
-} FlCssPage;
 
 /**
  * Reads the <style> elements and <?xml-stylesheet?> of a document, with the files beside it that

@@ -1,6 +1,6 @@
 #include "svg/css_value.h"
 
-#include "svg/transform.h"
+#include "svg/affine.h"
 #include <math.h>
 #include <string.h>
 

@@ -2,7 +2,7 @@
 
 #include "svg/effects.h"
 #include "svg/path_data.h"
-#include "svg/pen.h"
+#include "svg/transform.h"
 #include <math.h>
 #include <string.h>
 
@@ -129,16 +129,6 @@ static void enter_viewport(const Reader *reader, const xmlNode *node, Inherited 
     }
 }
 
-/** The transform of a node; the identity if librsvg rejects the attribute. */
-static FlAffine transform_of(const xmlNode *node)
-{
-    FlAffine m = FL_AFFINE_NONE;
-    g_autoptr(xmlChar) text = fl_attribute(node, "transform");
-    if (text)
-        fl_affine_parse((const char *)text, &m);
-    return m;
-}
-
 static void enter_properties(const Reader *reader, const xmlNode *node, Inherited *s)
 {
     s->clipped |=
@@ -169,7 +159,7 @@ static Inherited inherited_by(Reader *reader, const xmlNode *node)
     if (known)
         return *known;
     Inherited s = inherited_by(reader, node->parent);
-    const FlAffine m = transform_of(node);
+    const FlAffine m = fl_affine_of(node);
     s.ctm = fl_affine_multiply(&s.ctm, &m);
     if (fl_is(node, "svg"))
         enter_viewport(reader, node, &s);
@@ -324,14 +314,14 @@ FlOutlines *fl_outlines_of_shape(const xmlNode *node, double dpi, FlPageSize vie
     return outlines;
 }
 
-FlOutlines *fl_outlines_new(const FlSvg *svg, FlPageSize page)
+FlOutlines *fl_outlines_new(xmlDoc *doc, const FlLeaves *list, double dpi, FlPageSize page)
 {
-    const GArray *leaves = fl_svg_leaves(svg)->leaf;
-    g_autoptr(GHashTable) ids = fl_document_ids(fl_svg_document(svg));
+    const GArray *leaves = list->leaf;
+    g_autoptr(GHashTable) ids = fl_document_ids(doc);
     g_autoptr(GHashTable) inherited = g_hash_table_new_full(NULL, NULL, NULL, g_free);
     g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
     g_autoptr(GArray) cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic));
-    Reader reader = {fl_svg_dpi(svg), page.width, page.height, inherited, subpath, cubic};
+    Reader reader = {dpi, page.width, page.height, inherited, subpath, cubic};
     g_autofree FlGeometry *read = g_new0(FlGeometry, leaves->len + 1);
     for (guint i = 0; i < leaves->len; i++) {
         const FlLeaf *leaf = &g_array_index(leaves, FlLeaf, i);

@@ -2,8 +2,13 @@
 #ifndef FLUIDY_SVG_GEOMETRY_H
 #define FLUIDY_SVG_GEOMETRY_H
 
-#include "svg/svg_frame.h"
-#include "svg/transform.h"
+#include "svg/leaves.h"
+#include "svg/pen.h"
+
+/** The size of a page when it is drawn, px; above 0. */
+typedef struct FlPageSize {
+    double width, height;
+} FlPageSize;
 
 typedef enum FlOutlineKind {
     FL_OUTLINE_NONE, // text, an image, a group drawn as one: no outline
@@ -13,16 +18,6 @@ typedef enum FlOutlineKind {
     FL_OUTLINE_RECT,
     FL_OUTLINE_POLY, // line, polyline, polygon
 } FlOutlineKind;
-
-/** Consecutive cubics; a line has its control points at thirds. */
-typedef struct FlSubpath {
-    int32_t first, n; // into FlOutlines.cubic
-    int32_t closed;
-} FlSubpath;
-
-typedef struct FlCubic {
-    FlPoint p[4]; // local coordinates
-} FlCubic;
 
 /** One leaf's outline. Names are hashes, to be compared only; 0 is "". */
 typedef struct FlGeometry {
@@ -51,12 +46,12 @@ typedef struct FlOutlines {
 } FlOutlines;
 
 /**
- * Reads the outlines of a drawing whose page is scaled to width x height px.
+ * Reads the outlines of leaves in their normalised document, whose page is scaled to `page`.
  *
  * An arc is always four cubics and a rectangle always eight, so that a shape keeps its structure
  * while its numbers change; a closing line of no length is dropped.
  */
-FlOutlines *fl_outlines_new(const FlSvg *svg, FlPageSize page);
+FlOutlines *fl_outlines_new(xmlDoc *doc, const FlLeaves *list, double dpi, FlPageSize page);
 
 /**
  * The outline of a path or basic shape alone, in local coordinates; percentages are of `viewport`,

@@ -2,7 +2,19 @@
 #ifndef FLUIDY_SVG_PEN_H
 #define FLUIDY_SVG_PEN_H
 
-#include "svg/geometry.h"
+#include "svg/affine.h"
+#include <glib.h>
+#include <stdint.h>
+
+/** Consecutive cubics; a line has its control points at thirds. */
+typedef struct FlSubpath {
+    int32_t first, n; // into FlOutlines.cubic
+    int32_t closed;
+} FlSubpath;
+
+typedef struct FlCubic {
+    FlPoint p[4]; // local coordinates
+} FlCubic;
 
 /** The state of a path under construction. */
 typedef struct FlPen {

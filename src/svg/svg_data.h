@@ -2,7 +2,12 @@
 #ifndef FLUIDY_SVG_SVG_DATA_H
 #define FLUIDY_SVG_SVG_DATA_H
 
-#include "svg/svg_frame.h"
+#include "base/cleanup.h"
+#include "svg/geometry.h"
+#include "svg/leaf_paint.h"
+#include <fluidy/error.h>
+
+typedef struct FlSvg FlSvg;
 
 /** Tells if any leaf is parked far off the page. */
 typedef enum FlFar {

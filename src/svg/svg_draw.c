@@ -1,5 +1,6 @@
 #include "base/surface.h"
 #include "svg/svg_data.h"
+#include "svg/svg_frame.h"
 #include <math.h>
 
 /** Renders a layer of one of the handles; NULL: everything. */

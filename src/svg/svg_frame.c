@@ -160,7 +160,7 @@ xmlDoc *fl_svg_document(const FlSvg *svg)
     return svg->doc;
 }
 
-double fl_svg_dpi(const FlSvg *svg)
+FlOutlines *fl_svg_outlines(const FlSvg *svg, FlPageSize page)
 {
-    return svg->dpi;
+    return fl_outlines_new(svg->doc, svg->leaves, svg->dpi, page);
 }

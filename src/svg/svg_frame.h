@@ -3,8 +3,8 @@
 #define FLUIDY_SVG_SVG_FRAME_H
 
 #include "base/cleanup.h"
+#include "svg/geometry.h"
 #include "svg/leaf_paint.h"
-#include "svg/leaves.h"
 #include <fluidy/render.h>
 
 /** The page of drawings without a size, in user units. */
@@ -14,11 +14,6 @@ typedef struct FlCanvas {
 
 /** Reads "WxH" or "WxH+X+Y" in px. FL_ERROR_USAGE. */
 bool fl_canvas_parse(const char *text, FlCanvas *canvas, GError **error);
-
-/** The size of a page when it is drawn, px; above 0. */
-typedef struct FlPageSize {
-    double width, height;
-} FlPageSize;
 
 typedef struct FlSvgOptions {
     FlCanvas canvas;
@@ -62,7 +57,8 @@ const FlLeaves *fl_svg_leaves(const FlSvg *svg);
 /** The normalised document, in which the leaves have their ids; it belongs to svg. */
 xmlDoc *fl_svg_document(const FlSvg *svg);
 
-double fl_svg_dpi(const FlSvg *svg);
+/** The outlines of its leaves; to be freed with fl_outlines_free(). */
+FlOutlines *fl_svg_outlines(const FlSvg *svg, FlPageSize page);
 
 /**
  * The computed paints of a leaf. FlPainted.width is a share of the page's longer side.

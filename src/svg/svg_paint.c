@@ -1,5 +1,6 @@
 #include "svg/paint_probe.h"
 #include "svg/svg_data.h"
+#include "svg/svg_frame.h"
 #include <cairo-script.h>
 #include <math.h>
 #include <string.h>

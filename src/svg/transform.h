@@ -1,33 +1,10 @@
-/* Affine maps, and how SVG and CSS write them. */
+/* Affine maps as SVG and CSS write them. */
 #ifndef FLUIDY_SVG_TRANSFORM_H
 #define FLUIDY_SVG_TRANSFORM_H
 
+#include "svg/affine.h"
 #include "svg/css_value.h"
-
-typedef struct FlPoint {
-    double x, y;
-} FlPoint;
-
-/** x' = xx x + xy y + x0, y' = yx x + yy y + y0: matrix(xx yx xy yy x0 y0) of SVG. */
-typedef struct FlAffine {
-    double xx, yx, xy, yy, x0, y0;
-} FlAffine;
-
-#define FL_AFFINE_NONE ((FlAffine){1, 0, 0, 1, 0, 0})
-
-static inline FlPoint fl_affine_apply(const FlAffine *m, FlPoint p)
-{
-    return (FlPoint){m->xx * p.x + m->xy * p.y + m->x0, m->yx * p.x + m->yy * p.y + m->y0};
-}
-
-/** The composition that applies `inner` first. */
-FlAffine fl_affine_multiply(const FlAffine *outer, const FlAffine *inner);
-
-/** Returns: false if m is singular. */
-bool fl_affine_invert(const FlAffine *m, FlAffine *inverse);
-
-/** Sine and cosine of an angle in degrees, the same on every CPU, to 1e-15. */
-void fl_sincos_degrees(double degrees, double *sine, double *cosine);
+#include "svg/document.h"
 
 /**
  * Reads a list of functions, "translate(3 4) rotate(10deg)", of the attribute or of the CSS
@@ -42,6 +19,7 @@ bool fl_affine_parse(const char *text, FlAffine *m);
  */
 bool fl_affine_parse_css(const char *text, const FlCssUnits *units, FlAffine *m);
 
-FlAffine fl_affine_rotation(double degrees);
+/** The transform of an element; the identity if librsvg rejects the attribute. */
+FlAffine fl_affine_of(const xmlNode *node);
 
 #endif

@@ -4,7 +4,6 @@
 #include "base/parallel_error.h"
 #include "base/spill.h"
 #include "synth/spline.h"
-#include "synth/vote.h"
 
 struct FlEnlargement {
     FlExemplarLevel level; // its colours only
@@ -72,9 +71,8 @@ static bool spill_frames(FlEnlargement *enlargement, const FlStyle *style, GErro
     return true;
 }
 
-FlEnlargement *fl_enlargement_new(const FlStyle *style, const FlExemplar *exemplar, GError **error)
+FlEnlargement *fl_enlargement_new(const FlStyle *style, const FlExemplarLevel *half, GError **error)
 {
-    const FlExemplarLevel *half = &exemplar->level[0];
     g_autoptr(FlEnlargement) enlargement = g_new0(FlEnlargement, 1);
     FlExemplarLevel *level = &enlargement->level;
     level->width = style->width, level->height = style->height;
@@ -111,10 +109,10 @@ static void release_frames(FlEnlargement *enlargement, int t, int end)
                (size_t)(end - t) * level->frame_pixels * sizeof *level->colour);
 }
 
-bool fl_enlargement_seek(FlEnlargement *enlargement, const FlExemplar *exemplar, GError **error)
+bool fl_enlargement_seek(FlEnlargement *enlargement, int now, GError **error)
 {
     FlExemplarLevel *level = &enlargement->level;
-    const int old = level->first, window = level->window, now = exemplar->level[0].first;
+    const int old = level->first, window = level->window;
     const size_t values = 3 * pixels_of(enlargement);
     if (now == old)
         return true;
@@ -133,21 +131,4 @@ bool fl_enlargement_seek(FlEnlargement *enlargement, const FlExemplar *exemplar,
         pack_frame(enlargement, rgb, t, planes);
     }
     return true;
-}
-
-/* ---- votes ----------------------------------------------------------------------------------- */
-
-void fl_enlarge(const FlEnlargement *enlargement, const FlNnf *nnf, const FlBlocks *blocks,
-                FlRect rect, const FlEnlarged *enlarged)
-{
-    const FlRect page = {0, 0, enlarged->width, enlarged->height};
-    const FlRect full = fl_rect_doubled(rect, page);
-    const size_t stride = (size_t)enlarged->width;
-    const FlDoubledPicture picture = {enlarged->rgb +
-                                          3 * ((size_t)full.y * stride + (size_t)full.x),
-                                      stride, full.width, full.height};
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int k = 0; k < blocks->n; k++)
-        fl_vote_block_doubled(nnf, blocks->block[k], &enlargement->level, enlarged->kernels,
-                              enlarged->sharpness, &picture);
 }

@@ -6,8 +6,6 @@
 #include "base/spill.h"
 #include "guides/distance.h"
 #include "style/adapt.h"
-#include "synth/enlargement.h"
-#include "synth/exemplar_level.h"
 #include "synth/spline.h"
 #include <string.h>
 
@@ -104,7 +102,13 @@ static bool pack_pyramid(FlExemplar *exemplar, FlPyramid *full, int t, GError **
         fl_alloc(3 * (size_t)full->width * full->height, sizeof *planes, "an exemplar", error);
     if (!planes)
         return false;
-    fl_exemplar_level_pack(&exemplar->level[0], full, exemplar, t, planes);
+    const uint8_t *paper = exemplar->paper;
+    const FlPacking packing = {exemplar->separate,
+                               exemplar->border_px,
+                               exemplar->bare,
+                               exemplar->ext_scale,
+                               {paper[0], paper[1], paper[2]}};
+    fl_exemplar_level_pack(&exemplar->level[0], full, &packing, t, planes);
     g_auto(FlPyramid) fine = {0};
     for (int l = 1; l < exemplar->n_levels; l++) {
         FlExemplarLevel *level = &exemplar->level[l];
@@ -114,7 +118,7 @@ static bool pack_pyramid(FlExemplar *exemplar, FlPyramid *full, int t, GError **
         fl_pyramid_halve(l == 1 ? full : &fine, &coarse);
         fl_pyramid_clear(&fine);
         fine = coarse;
-        fl_exemplar_level_pack(level, &fine, exemplar, t, planes);
+        fl_exemplar_level_pack(level, &fine, &packing, t, planes);
     }
     return true;
 }
@@ -432,7 +436,8 @@ FlExemplar *fl_exemplar_new_half(const FlStyle *style, const FlParams *params, G
     fl_params_scale_lengths(&halved, .5f);
     g_autoptr(FlStyle) half = fl_style_halve(style, error);
     g_autoptr(FlExemplar) exemplar = half ? make_exemplar(half, style, &halved, error) : NULL;
-    if (!exemplar || !(exemplar->enlargement = fl_enlargement_new(style, exemplar, error)))
+    if (!exemplar ||
+        !(exemplar->enlargement = fl_enlargement_new(style, &exemplar->level[0], error)))
         return NULL;
     return g_steal_pointer(&exemplar);
 }
@@ -469,7 +474,8 @@ bool fl_exemplar_seek(FlExemplar *exemplar, int first, GError **error)
         if (!fl_exemplar_level_list(&exemplar->level[l], error))
             return false;
     }
-    return !exemplar->enlargement || fl_enlargement_seek(exemplar->enlargement, exemplar, error);
+    return !exemplar->enlargement ||
+           fl_enlargement_seek(exemplar->enlargement, exemplar->level[0].first, error);
 }
 
 void fl_exemplar_free(FlExemplar *exemplar)

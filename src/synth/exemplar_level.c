@@ -7,18 +7,18 @@
 
 /* True if a pixel of the interior has hardly any paint. These pixels occur at the ends of deep
  * dents in a ragged rim. Copied into a target they make holes, which spread when shapes merge. */
-static bool is_bare(const FlPyramid *pyramid, size_t p, const FlExemplar *exemplar)
+static bool is_bare(const FlPyramid *pyramid, size_t p, const FlPacking *packing)
 {
     float apart = 0;
     for (int c = 0; c < 3; c++)
-        apart += fabsf(pyramid->plane[FL_PLANE_R + c][p] - exemplar->paper[c] / 255.0f);
-    return apart < exemplar->bare;
+        apart += fabsf(pyramid->plane[FL_PLANE_R + c][p] - packing->paper[c] / 255.0f);
+    return apart < packing->bare;
 }
 
-static FlTexel pack(const FlPyramid *pyramid, size_t p, const FlExemplar *exemplar)
+static FlTexel pack(const FlPyramid *pyramid, size_t p, const FlPacking *packing)
 {
     FlTexel out;
-    const float ext_scale = exemplar->ext_scale * FL_EXT_UNIT;
+    const float ext_scale = packing->ext_scale * FL_EXT_UNIT;
     for (int c = 0; c < 3; c++)
         out.c[FL_CH_R + c] = fl_texel_channel(pyramid->plane[FL_PLANE_R + c][p]);
     out.c[FL_CH_SHAPE] = fl_texel_channel(pyramid->plane[FL_PLANE_SHAPE][p]);
@@ -27,20 +27,20 @@ static FlTexel pack(const FlPyramid *pyramid, size_t p, const FlExemplar *exempl
     out.c[FL_CH_ANGLE] = fl_pyramid_angle(pyramid, p);
     out.c[FL_CH_SEGMENT] = (uint8_t)fl_segment_of(pyramid->plane[FL_PLANE_INSIDE][p] >= 0.5f,
                                                   pyramid->plane[FL_PLANE_DISTANCE][p],
-                                                  exemplar->border_px, exemplar->separate);
+                                                  packing->border_px, packing->separate);
     return out;
 }
 
 /* Takes patches that have bare pixels out of the interior. */
-static void leave_bare(FlExemplarLevel *level, const FlPyramid *pyramid, const FlExemplar *exemplar,
+static void leave_bare(FlExemplarLevel *level, const FlPyramid *pyramid, const FlPacking *packing,
                        int t)
 {
     const int r = FL_PATCH_RADIUS;
-    for (int y = 0; y < level->height && exemplar->bare > 0; y++)
+    for (int y = 0; y < level->height && packing->bare > 0; y++)
         for (int x = 0; x < level->width; x++) {
             const size_t p = (size_t)y * level->width + x;
-            if (pyramid->plane[FL_PLANE_DISTANCE][p] < exemplar->border_px ||
-                !is_bare(pyramid, p, exemplar))
+            if (pyramid->plane[FL_PLANE_DISTANCE][p] < packing->border_px ||
+                !is_bare(pyramid, p, packing))
                 continue;
             for (int ny = MAX(y - r, 0); ny <= MIN(y + r, level->height - 1); ny++)
                 for (int nx = MAX(x - r, 0); nx <= MIN(x + r, level->width - 1); nx++) {
@@ -52,14 +52,14 @@ static void leave_bare(FlExemplarLevel *level, const FlPyramid *pyramid, const F
 }
 
 /* Padding repeats the nearest pixel but belongs to no segment. */
-static void pack_frame(FlExemplarLevel *level, const FlPyramid *pyramid, const FlExemplar *exemplar,
+static void pack_frame(FlExemplarLevel *level, const FlPyramid *pyramid, const FlPacking *packing,
                        int t)
 {
     FlTexel *frame = level->pixels + t * level->frame_pixels;
     for (int y = -FL_PAD; y < level->height + FL_PAD; y++) {
         for (int x = -FL_PAD; x < level->width + FL_PAD; x++) {
             const int sx = CLAMP(x, 0, level->width - 1), sy = CLAMP(y, 0, level->height - 1);
-            FlTexel packed = pack(pyramid, (size_t)sy * level->width + sx, exemplar);
+            FlTexel packed = pack(pyramid, (size_t)sy * level->width + sx, packing);
             if (sx != x || sy != y)
                 packed.c[FL_CH_SEGMENT] = FL_SEGMENT_OUTSIDE;
             frame[(size_t)(y + FL_PAD) * level->pitch + x + FL_PAD] = packed;
@@ -80,10 +80,10 @@ static void pack_colour(FlExemplarLevel *level, const FlPyramid *pyramid, int t,
 }
 
 void fl_exemplar_level_pack(FlExemplarLevel *level, const FlPyramid *pyramid,
-                            const FlExemplar *exemplar, int t, float *planes)
+                            const FlPacking *packing, int t, float *planes)
 {
-    pack_frame(level, pyramid, exemplar, t);
-    leave_bare(level, pyramid, exemplar, t);
+    pack_frame(level, pyramid, packing, t);
+    leave_bare(level, pyramid, packing, t);
     pack_colour(level, pyramid, t, planes);
 }
 

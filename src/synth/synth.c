@@ -6,7 +6,6 @@
 #include "guides/half_guides.h"
 #include "synth/carry.h"
 #include "synth/drying.h"
-#include "synth/enlargement.h"
 #include "synth/patch_pairs.h"
 #include "synth/shift.h"
 #include "synth/synth_data.h"
@@ -139,8 +138,8 @@ static void enlarge(const FlSynth *synth, uint8_t *rgb)
 {
     const FlEnlarged enlarged = {&synth->kernels, synth->params->vote_sharpness,
                                  synth->last.painted_width, synth->last.painted_height, rgb};
-    fl_enlarge(synth->exemplar->enlargement, &synth->nnf[0], &synth->target.level[0].blocks,
-               synth->target.rect, &enlarged);
+    fl_enlarge(fl_enlargement_level(synth->exemplar->enlargement), &synth->nnf[0],
+               &synth->target.level[0].blocks, synth->target.rect, &enlarged);
 }
 
 /* Beside the blocks there is paper. */

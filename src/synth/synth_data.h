@@ -3,8 +3,8 @@
 #define FLUIDY_SYNTH_SYNTH_DATA_H
 
 #include "synth/rest.h"
-#include "synth/synth.h"
 #include "synth/synth_state.h"
+#include "synth/synth_view.h"
 
 struct FlSynth {
     const FlExemplar *exemplar;

@@ -3,7 +3,7 @@
 #define FLUIDY_SYNTH_SYNTH_LEVELS_H
 
 #include "synth/carry.h"
-#include "synth/synth.h"
+#include "synth/synth_view.h"
 
 /** The finest level that is searched. Where it is not the finest of all, that one is the coarser
  * level's field, enlarged. */

@@ -183,3 +183,18 @@ void fl_vote_block_doubled(const FlNnf *nnf, FlRect block, const FlExemplarLevel
     }
     strip_free(&strip);
 }
+
+void fl_enlarge(const FlExemplarLevel *level, const FlNnf *nnf, const FlBlocks *blocks, FlRect rect,
+                const FlEnlarged *enlarged)
+{
+    const FlRect page = {0, 0, enlarged->width, enlarged->height};
+    const FlRect full = fl_rect_doubled(rect, page);
+    const size_t stride = (size_t)enlarged->width;
+    const FlDoubledPicture picture = {enlarged->rgb +
+                                          3 * ((size_t)full.y * stride + (size_t)full.x),
+                                      stride, full.width, full.height};
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int k = 0; k < blocks->n; k++)
+        fl_vote_block_doubled(nnf, blocks->block[k], level, enlarged->kernels, enlarged->sharpness,
+                              &picture);
+}

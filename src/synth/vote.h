@@ -42,6 +42,19 @@ void fl_vote_block_doubled(const FlNnf *nnf, FlRect block, const FlExemplarLevel
                            const FlKernels *kernels, float sharpness,
                            const FlDoubledPicture *picture);
 
+/** The picture that enlarged votes are written to. */
+typedef struct FlEnlarged {
+    const FlKernels *kernels;
+    float sharpness;   // of votes, see fl_vote()
+    int width, height; // of the picture
+    uint8_t *rgb;      // width * height * 3, sRGB
+} FlEnlarged;
+
+/** Paints the field of a part of a frame, `rect`, in twice its size, by the colours of `level`: all
+ * in its blocks that patches cover. */
+void fl_enlarge(const FlExemplarLevel *level, const FlNnf *nnf, const FlBlocks *blocks, FlRect rect,
+                const FlEnlarged *enlarged);
+
 /** A colour of a vote as a byte. */
 static inline uint8_t fl_vote_byte(float value)
 {

@@ -190,7 +190,7 @@ static void find_paths(Stage *stage)
         if (!is_by_hand(step, stage->frame->hand))
             continue;
         if (!outlines) {
-            outlines = fl_outlines_new(stage->svg, stage->frame->page);
+            outlines = fl_svg_outlines(stage->svg, stage->frame->page);
             stage->paths = g_new0(FlLinePaths *, stage->frame->n_steps);
         }
         if (step->leaf < outlines->n_leaves)

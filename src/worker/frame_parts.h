@@ -3,6 +3,7 @@
 #define FLUIDY_WORKER_FRAME_PARTS_H
 
 #include "svg/pose.h"
+#include "svg/svg_frame.h"
 
 #define FL_SURVEY_MOST_SIDE 32767 // px; cairo's limit
 

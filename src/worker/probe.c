@@ -255,7 +255,7 @@ static bool add_known(FlFrameProbe *f, const FlLeaf *leaf, int index, FlDigest d
 static FlPose pose_of(FlFrameProbe *f, const FlLeaf *leaf, int index)
 {
     if (!f->outlines)
-        f->outlines = fl_outlines_new(f->svg, whole_page(f));
+        f->outlines = fl_svg_outlines(f->svg, whole_page(f));
     const FlPose pose = fl_outline_pose(f->outlines, index);
     if (pose.n > 0)
         return pose;

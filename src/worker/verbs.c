@@ -100,7 +100,7 @@ static bool outline(const FlRequest *r, GByteArray *out, GError **error)
 {
     size_t bytes = 0;
     g_autoptr(FlSvg) svg = fl_svg_read(r->file, r->number, &r->svg, NULL, error);
-    g_autoptr(FlOutlines) outlines = svg ? fl_outlines_new(svg, r->page) : NULL;
+    g_autoptr(FlOutlines) outlines = svg ? fl_svg_outlines(svg, r->page) : NULL;
     g_autofree uint8_t *data = outlines ? fl_outlines_pack(outlines, &bytes) : NULL;
     if (bytes > INT_MAX) {
         g_set_error(error, FL_ERROR, FL_ERROR_LIMIT, "%s: its outlines have more than 2 GiB",

@@ -1,7 +1,8 @@
 /* A transform, to the end of the line, and path data that it is applied to. */
 #include "fuzz.h"
+#include "svg/geometry.h"
 #include "svg/path_data.h"
-#include "svg/pen.h"
+#include "svg/transform.h"
 #include <math.h>
 #include <string.h>
 
