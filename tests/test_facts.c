@@ -1,4 +1,5 @@
 /* A change of anything that a render is made from makes it start anew. */
+#include "base/schedule.h"
 #include "io/provenance.h"
 #include "job/outputs.h"
 #include "job/plan_facts.h"
@@ -353,6 +354,7 @@ static void a_change_of_any_option_starts_the_render_anew(void)
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
+    (void)fl_schedule_set_threads(1); // a worker for each thread is started by every plan
     film_make();
     g_test_add_func("/facts/a-change-of-any-file-starts-the-render-anew",
                     a_change_of_any_file_starts_the_render_anew);

@@ -16,7 +16,7 @@ enum { FL_DRAWN_AS_IT_IS = -1, FL_LEFT_OUT = -2 };
 typedef struct FlStyleInstance {
     char *path;
     FlParams params; // that it was packed for
-    bool reverse;
+    bool reverse, halved; // halved: for a field of half the size, if there is room for its patches
     FlExemplar *exemplar;
     FlInk *ink;
     struct FlSliced *patches; // of its ink, for the refinement of transport; NULL: not needed

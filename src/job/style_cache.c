@@ -113,6 +113,7 @@ static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
     *instance = (FlStyleInstance){.path = g_strdup(path),
                                   .params = *params,
                                   .reverse = settings->reverse,
+                                  .halved = enlarges(cache, settings, path),
                                   .enlarged = factor,
                                   .medium = style->medium,
                                   .granulation = style->granulation,
@@ -122,9 +123,8 @@ static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
     FlParams packed = *params;
     packed.style_window = window_of(params, style);
     if (!(instance->ink = fl_ink_of_style(style, error)) ||
-        !(instance->exemplar = enlarges(cache, settings, path)
-                                   ? fl_exemplar_new_half(style, &packed, error)
-                                   : fl_exemplar_new(style, &packed, error)))
+        !(instance->exemplar = (instance->halved ? fl_exemplar_new_half : fl_exemplar_new)(
+              style, &packed, error)))
         return NULL;
     instance->border_px = instance->exemplar->border_px * (float)fl_field_px(instance->exemplar);
     return g_steal_pointer(&instance);
@@ -140,7 +140,7 @@ const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSet
     for (guint i = 0; i < cache->instances->len && !instance; i++) {
         const FlStyleInstance *known = cache->instances->pdata[i];
         if (g_str_equal(known->path, path) && known->reverse == settings->reverse &&
-            (fl_field_px(known->exemplar) == 2) == enlarges(cache, settings, path) &&
+            known->halved == enlarges(cache, settings, path) &&
             same_params(&known->params, &settings->params))
             instance = g_ptr_array_steal_index(cache->instances, i);
     }

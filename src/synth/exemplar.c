@@ -430,16 +430,30 @@ FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError
     return make_exemplar(style, NULL, params, error);
 }
 
+/* True if there are patches in the window that no contour crosses, however they are turned. */
+static bool is_deep(const FlExemplar *exemplar)
+{
+    const FlExemplarLevel *level = &exemplar->level[0];
+    const size_t pixels = (size_t)level->width * (size_t)level->height;
+    const float *distance = exemplar->distance + (size_t)level->first * pixels;
+    float deepest = 0;
+    for (size_t p = 0; p < pixels * (size_t)level->window; p++)
+        deepest = MAX(deepest, distance[p]);
+    return deepest >= 2 * FL_PATCH_RADIUS;
+}
+
 FlExemplar *fl_exemplar_new_half(const FlStyle *style, const FlParams *params, GError **error)
 {
     FlParams halved = *params;
     fl_params_scale_lengths(&halved, .5f);
     g_autoptr(FlStyle) half = fl_style_halve(style, error);
     g_autoptr(FlExemplar) exemplar = half ? make_exemplar(half, style, &halved, error) : NULL;
-    if (!exemplar ||
-        !(exemplar->enlargement = fl_enlargement_new(style, &exemplar->level[0], error)))
+    if (!exemplar)
         return NULL;
-    return g_steal_pointer(&exemplar);
+    if (!is_deep(exemplar))
+        return fl_exemplar_new(style, params, error);
+    exemplar->enlargement = fl_enlargement_new(style, &exemplar->level[0], error);
+    return exemplar->enlargement ? g_steal_pointer(&exemplar) : NULL;
 }
 
 /* Packs a frame that enters the window. */

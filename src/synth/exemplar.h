@@ -37,7 +37,8 @@ typedef struct FlExemplar {
 FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error);
 
 /** The same for fields and guides of half the size of the picture, which is voted from the style in
- * its full size. Lengths in params are px of the picture. */
+ * its full size. Lengths in params are px of the picture. A style whose paint is narrower than two
+ * patches of its half is not halved. */
 FlExemplar *fl_exemplar_new_half(const FlStyle *style, const FlParams *params, GError **error);
 
 void fl_exemplar_free(FlExemplar *exemplar); // NULL is fine
