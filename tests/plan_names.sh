@@ -11,7 +11,7 @@ endings=(
     '{{Param.Folder}}' '{{Task.Param.Regions}}' '}}{{Session.WorkingDirectory}}' $')\npwn\n(' '<(pwn)' $'\r\npwn\r\n'
     ' -e pwn' '%x%(pwn)%%n' '#!pwn' $'\e]0;pwn\a' $'\xff;pwn' ' --wrap=pwn ' '*?[a-z]{pwn,pwn}' '~pwn!pwn' $'\\\npwn\n'
     '$IFS$(pwn)' $'\t;pwn\n#SBATCH --wrap=pwn\n')
-heads=("a" "it's" '-"')
+heads=("a" "it's" '-"') # the first before every ending, the others by turns
 
 mkdir bin hostile
 cat >bin/fluidy-svg <<'END'
@@ -77,16 +77,17 @@ def calls(record):
         found.append(call[:-2] if call[-2:] == ["--progress", "plain"] else call)
     return found
 
-dialect, plan, name = sys.argv[1:]
-plan = json.load(open(plan))
-if dialect == "openjd":
-    run_openjd(plan, "openjd.record")
-else:
-    for task in plan["tasks"] + plan["merge"] + plan["film"]:
-        run(task["command"], plan["folder"], "json.record")
-got, wanted = calls(dialect + ".record"), calls("slurm.record")
-assert got == wanted, (got, wanted)
-assert len(got) == 3 and all("./" + name in call and call[0].endswith("/" + name) for call in got)
+name, *dialects = sys.argv[1:]
+for dialect in dialects:
+    plan = json.load(open(dialect + ".json"))
+    if dialect == "openjd":
+        run_openjd(plan, "openjd.record")
+    else:
+        for task in plan["tasks"] + plan["merge"] + plan["film"]:
+            run(task["command"], plan["folder"], "json.record")
+    got, wanted = calls(dialect + ".record"), calls("slurm.record")
+    assert got == wanted, (got, wanted)
+    assert len(got) == 3 and all("./" + name in call and call[0].endswith("/" + name) for call in got)
 END
 
 is_wrong() { # is_wrong DIALECT
@@ -96,7 +97,9 @@ is_wrong() { # is_wrong DIALECT
 
 executed=0 wrong=0 refused=0 names=0
 for head in "${heads[@]}"; do
-    for ending in "${endings[@]}"; do
+    for k in "${!endings[@]}"; do
+        ending=${endings[k]}
+        [ "$head" = "${heads[0]}" ] || [ "$head" = "${heads[k % 2 + 1]}" ] || continue
         name=$head$ending place=hostile/$head$ending names=$((names + 1))
         mkdir -p "$place/$name"
         cp 1.svg "$place/$name/${name}_1.svg" && cp 2.svg "$place/$name/${name}_2.svg"
@@ -105,14 +108,18 @@ for head in "${heads[@]}"; do
         plan slurm >plan.sh 2>err && PATH=$PWD/bin:$PATH bash plan.sh >out 2>>err </dev/null &&
             [ "$(tr '\0' '\n' <slurm.record | grep -c '^end$')" = 3 ] &&
             [ "$(wc -l <"$place/log")" = 3 ] || is_wrong slurm
+        planned=()
         for dialect in json openjd; do
-            if ! plan $dialect >plan.json 2>err; then
+            if plan $dialect >$dialect.json 2>err; then
+                planned+=($dialect)
+            else
                 says 'cannot hold this name' && refused=$((refused + 1)) || is_wrong $dialect
-            elif command -v python3 >/dev/null; then
-                RECORD='' PATH=$PWD/bin:$PATH python3 run.py $dialect plan.json "$name" >out 2>err ||
-                    is_wrong $dialect
             fi
         done
+        if [ ${#planned[@]} -gt 0 ] && command -v python3 >/dev/null; then
+            RECORD='' PATH=$PWD/bin:$PATH python3 run.py "$name" "${planned[@]}" >out 2>err ||
+                is_wrong "${planned[*]}"
+        fi
         if [ -e pwned ]; then
             executed=$((executed + 1))
             echo "# executed: $(printf %q "$name")"
@@ -120,7 +127,7 @@ for head in "${heads[@]}"; do
         fi
     done
 done
-[ $names -ge 100 ] && [ $executed = 0 ]
+[ $names -ge 70 ] && [ $executed = 0 ]
 result $? "none of $names hostile names is executed by a plan, $executed are"
 [ $wrong = 0 ]
 result $? "each command gets the names as they are, or the plan is refused ($refused), $wrong are wrong"

@@ -123,8 +123,8 @@ static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
     FlParams packed = *params;
     packed.style_window = window_of(params, style);
     if (!(instance->ink = fl_ink_of_style(style, error)) ||
-        !(instance->exemplar = (instance->halved ? fl_exemplar_new_half : fl_exemplar_new)(
-              style, &packed, error)))
+        !(instance->exemplar =
+              (instance->halved ? fl_exemplar_new_half : fl_exemplar_new)(style, &packed, error)))
         return NULL;
     instance->border_px = instance->exemplar->border_px * (float)fl_field_px(instance->exemplar);
     return g_steal_pointer(&instance);
