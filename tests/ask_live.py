@@ -2,7 +2,7 @@
 """Asks the server of --serve what it must not answer; speaks lines of "ok - " and "not ok - ".
 
 usage: ask_live.py ADDRESS"""
-import http.client, sys, urllib.parse
+import http.client, socket, sys, time, urllib.parse
 
 address = urllib.parse.urlsplit(sys.argv[1])
 root, host = address.path, address.netloc
@@ -17,6 +17,19 @@ def ask(method, path, headers={}, **form):
     return answer.status, answer.read().decode()
 
 
+def look(**more):
+    """The first bytes that a page gets which asks for pictures."""
+    headers = {"Host": host, "Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13",
+               "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==", **more}
+    with socket.create_connection((address.hostname, address.port), 20) as connection:
+        lines = [f"GET {root}pictures HTTP/1.1", *[f"{name}: {value}" for name, value in headers.items()], "", ""]
+        connection.sendall("\r\n".join(lines).encode())
+        got = b""
+        while b"state" not in got and (more := connection.recv(4096)):
+            got += more
+        return got.decode(errors="replace")
+
+
 def choose(headers=own, section="defaults", key="carry", value="0.5"):
     return ask("POST", root + "choice", headers, section=section, key=key, value=value)[0]
 
@@ -26,17 +39,35 @@ def tell(sentence, good):
 
 
 tell("the page is there", ask("GET", root)[0] == 200 and "inspect" not in ask("GET", root)[1])
-tell("its address has a secret", ask("GET", "/")[0] == 404 and ask("GET", "/0000/state")[0] == 404 and len(root) > 30)
+tell("its address has a secret", ask("GET", "/")[0] == 404 and ask("GET", "/0000/options")[0] == 404 and len(root) > 30)
 tell("a name that leads here from elsewhere is refused", ask("GET", root, {"Host": f"evil.example:{address.port}"})[0] == 403)
 tell("so is another port", ask("GET", root, {"Host": "127.0.0.1:1"})[0] == 403)
 tell("localhost is a name of its own", ask("GET", root, {"Host": f"localhost:{address.port}"})[0] == 200)
 tell("a choice without an origin is refused", choose({"Content-Type": own["Content-Type"]}) == 403)
 tell("so is one from another site", choose({**own, "Origin": "http://evil.example"}) == 403)
-tell("and a page of another site that reads", ask("GET", root + "state", {"Origin": "null"})[0] == 403)
+tell("and a page of another site that reads", ask("GET", root + "options", {"Origin": "null"})[0] == 403)
 tell("an output cannot be chosen", choose(section="project", key="output", value="/tmp/x") == 400)
 tell("nor an option of the command line alone", choose(section="project", key="dump", value="/tmp/x") == 400)
 tell("nor a key that does not exist", choose(key="carri") == 400)
 tell("nor a value of two lines", choose(value="1\noutput = x") == 400 and choose(section="region a]\n[project") == 400)
 tell("a choice is not read by GET", ask("GET", root + "choice")[0] == 404)
 tell("a large body is refused", ask("POST", root + "choice", own, value="x" * 100000)[0] == 413)
+tell("a value of the wrong kind is refused with its words", "much" in ask("POST", root + "choice", own, section="defaults",
+     key="carry", value="much")[1])
+tell("the page sees pictures", "state" in look())
+tell("that of another site does not", "state" not in look(Origin="http://evil.example"))
+tell("a file that is no drawing is refused", ask("POST", root + "drop?name=a.sh&first=1&last=1", own, x="y")[0] == 400 and
+     ask("POST", root + "drop?name=../a.svg&first=1&last=1", own, x="y")[0] == 400)
+many = [http.client.HTTPConnection(address.hostname, address.port, timeout=20) for _ in range(100)]
+for connection in many:
+    connection.connect()
+for connection in many:
+    connection.close()
+status = 0
+while status != 200:  # until the server has seen that they are closed
+    try:
+        status = ask("GET", root)[0]
+    except OSError:
+        time.sleep(0.1)
+tell("a hundred connections are too many, and do no harm", status == 200)
 tell("none of them changed the config", ask("GET", root + "config")[1].count("=") == 2)

@@ -33,7 +33,7 @@ class Browser:
         os.write(self.out, json.dumps(request).encode() + b"\0")
         while (answer := self.message()).get("id") != self.number:
             if answer.get("method") == "Runtime.exceptionThrown":
-                self.complaints.append(answer["params"]["exceptionDetails"]["text"])
+                self.complaints.append(str(answer["params"]["exceptionDetails"].get("exception",{}).get("description"))[:400])
         return answer.get("result", {})
 
     def open(self, address):

@@ -79,15 +79,7 @@ visit ask_live.py "$address"
 if [ -z "$browser" ]; then
     skip 'a mouse goes through the page' 'no chromium'
 else
-    visit visit_live.py "$browser" "$address" "$folder/profile" film
-    grep -v '^layers' kept.conf >plain.conf # with layers, paint hides what is below
-    "$program" film --cache off -q -c plain.conf --report page -o 'full/%d.png' 2>err
-    result $? 'the config that it gives paints'
-    for page in kept.html page/index.html; do
-        grep -oE 'number:[0-9]+|after:"[^"]*"' $page >"$(basename "$page").frames"
-    done
-    [ -s kept.html.frames ] && cmp -s kept.html.frames index.html.frames
-    result $? 'what the page shows, to the bit'
+    visit visit_live.py "$browser" "$address" "$folder/profile" film "$program" --cache off
     grep -q '^# mine' kept.conf && grep -q '^# below' kept.conf && grep -q '^layers = ' kept.conf
     result $? 'and is her own, with what she wrote in it'
 fi

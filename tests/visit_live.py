@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Uses the page of --serve in a headless Chromium, with mouse and keyboard; speaks lines of "ok - " and "not ok - ".
 
-usage: visit_live.py BROWSER ADDRESS PROFILE FOLDER
-FOLDER has six drawings, w_0001.svg and so on, of a disc over a square. Leaves the config in kept.conf and the page as a
-file in kept.html."""
-import re, sys, time, urllib.request
+usage: visit_live.py BROWSER ADDRESS PROFILE FOLDER COMMAND…
+FOLDER has six drawings, w_0001.svg and so on, of a disc over a square. COMMAND paints them for comparison, into full/. Leaves
+the config in kept.conf."""
+import base64, shutil, subprocess, sys, time, urllib.request
 from browser import Browser
 
 address, folder = sys.argv[2], sys.argv[4]
@@ -46,72 +46,128 @@ def says(key, value, section):
     return until(f"{have} && live.step === 'done' && live.from > 0")
 
 
-PAINTED = "live.step === 'done' && shown.length === 6"
-tell("the film appears", until(PAINTED))
+REFINED = ("live.pending === 0 && live.state.generation >= live.expected && frames.length && "
+           "frames.every((f) => f.generation === live.generation && f.level === REFINED)")
+DRAWN = "frames.filter((f) => f.images.after && f.images.map).length === 6"
+
+
+def done(section, key, value):
+    """Whether the config says so in a section, and the film is refined by it."""
+    return until(f'(live.settings["{section}"] || {{}})["{key}"] === {value} && {REFINED}')
+
+
+def pixels(k):
+    """A digest of a frame's painting."""
+    return browser.ask(f"""(async () => {{ const image = frames[{k}].images.after;
+        const data = image.getContext("2d").getImageData(0, 0, image.width, image.height).data;
+        return [...new Uint8Array(await crypto.subtle.digest("SHA-256", data))].join(); }})()""")
+
+
+tell("the film appears", until(DRAWN))
 tell("with the regions of the drawing", browser.ask('byId("regions").rows.length') == 2)
-before = browser.ask("shown[3].after")
+tell("and plays", until("state.playing") and until("state.at === 2") and until("state.at === 4"))
+tell("and is refined", until(REFINED) and until('byId("status").textContent.includes("byte for byte")'))
+browser.ask("play(false), show(3)")
+tell("each style has a picture", until("live.samples.every((s) => !s.canvas.classList.contains('old'))"))
+before = pixels(3)
 browser.mouse(place('byId("view")', 0.55, 0.5))
 name = browser.ask("state.region")
 tell("a click in the picture picks the region", name is not None and browser.ask('byId("scope").textContent') == name)
 section = f"region {name}"
 
-browser.mouse(place(control("carry"), 0.3))
+slider = control("carry", "input[type=range]")
+browser.mouse(place(slider, 0.3))
 tell("a click on a slider chooses", until(f'live.settings["{section}"]'))
-carry = browser.ask(f'Number(live.settings["{section}"].carry)')
-tell("what it shows", 0.15 < carry < 0.4)
-browser.ask("window.marked = shown.length && shown[0]")
-# What the server says of the slider is on its way when the first key is pressed, and knows nothing of it.
-browser.ask("window.plainFetch = fetch, window.fetch = (...what) => plainFetch(...what).then((answer) =>"
-            "answer.clone().text().then((text) => !text.includes('\"settings\"') ? answer :"
-            "new Promise((go) => { window.arrive = () => go(answer); })))")
-browser.mouse(place(control("carry"), 0.4))
-tell("an answer is on its way", until("window.arrive"))
+tell("what it shows", 0.2 < browser.ask(f'Number(live.settings["{section}"].carry)') < 0.4)
+browser.mouse(place(slider, 0.99))
+tell("its end as well", until(f'live.settings["{section}"].carry === "1"'))
+browser.mouse(place(slider, 0.86))
+tell("and beside its thumb there", until(f'live.settings["{section}"].carry < 1'))
 browser.ask(control("tint", "select") + ".focus()")
 browser.key("ArrowDown")
-browser.ask("window.fetch = plainFetch, arrive(), new Promise((go) => setTimeout(go, 50))")
 browser.key("ArrowDown")
-tell("a key chooses a tint, whatever is on its way", says("tint", '"keep"', section))
-tell("which paints the film anew", until(PAINTED) and browser.ask("shown[3].after") != before)
-browser.ask(control("style", "select") + ".focus()")
-browser.type("07")
-tell("a style is chosen for the region alone", says("style", '"07"', section) and
+tell("a key chooses a tint", done(section, "tint", '"keep"'))
+tell("which paints the film anew", pixels(3) != before)
+browser.mouse(place('byId("undo")'))
+tell("and is taken back", done(section, "tint", '"fill"'))
+browser.mouse(place('byId("redo")'))
+tell("and done again", done(section, "tint", '"keep"'))
+tell("what was before is at hand", browser.ask("frames[3].images.earlier !== frames[3].images.after"))
+browser.ask("live.samples.find((s) => s.button && s.style.name === '01').button.focus()")
+for _ in range(6):
+    browser.key("ArrowRight")
+browser.key("Enter")
+tell("keys choose a style, for the region alone", done(section, "style", '"07"') and
      browser.ask('[...byId("regions").rows].filter((r) => r.textContent.includes("07")).length') == 1)
-browser.mouse(place(control("style-scale", "input[type=number]")))
+number = control("style-scale", "input[type=number]")
+browser.mouse(place(number))
 browser.type("0.7")
 browser.key("Enter")
-tell("a number is typed", says("style-scale", '"0.7"', section))
-browser.mouse(place(control("tint", "select") + ".parentNode.nextElementSibling"))
-tell("what was chosen is given back", says("tint", "undefined", section) and "tint" not in config())
-browser.mouse(place('byId("everywhere")'))
-browser.mouse(place(control("carry", "input[type=number]")))
-browser.type("7")
+tell("a number is typed", done(section, "style-scale", '"0.7"'))
+old = pixels(3)
+browser.ask(f"{number}.focus(), {number}.select()")
+browser.type("99")
 browser.key("Enter")
-tell("a number out of range goes nowhere", browser.ask(control("carry", "input[type=number]") + ".validity.rangeOverflow")
-     and browser.ask("(live.settings.defaults || {}).carry === undefined"))
+note = control("style-scale", "small") + ".textContent"
+tell("one out of range is refused with its words", until(note + ".includes('99')"))
+browser.ask(f"{number}.focus(), {number}.select()")
+browser.type("0.00001")
+browser.key("Enter")
+tell("and one that no style can have", until(note + ".includes('0x0')"))
+tell("which change nothing", done(section, "style-scale", '"0.7"') and pixels(3) == old)
+browser.mouse(place(control("tint", ".reset")))
+tell("what was chosen is given back", done(section, "tint", "undefined") and "tint" not in config())
+browser.mouse(place('byId("everywhere")'))
 browser.mouse(place(control("frames")))
 browser.type("2-5")
 browser.key("Enter")
-tell("a range of frames is painted", says("frames", '"2-5"', "project") and
-     until('shown.map((f) => f.number).join() === "2,3,4,5"'))
-browser.mouse(place('byId("sheet").children[2]'))
-tell("a frame of the sheet is shown", browser.ask("shown[state.at].number") == 4)
+tell("a range of frames is painted", done("project", "frames", '"2-5"') and
+     browser.ask('frames.map((f) => f.number).join() === "2,3,4,5"'))
+browser.ask('byId("view").focus(), document.activeElement.blur(), show(0)')
+browser.key("ArrowRight")
+tell("a key steps", browser.ask("shown[state.at].number") == 3)
+browser.mouse(place('byId("pin")'))
+tell("a painting stays as A", browser.ask('byId("left").value') == "kept")
+for mode in "beside", "onion", "wipe":
+    browser.ask(f'byId("mode").value = "{mode}", byId("mode").dispatchEvent(new Event("change"))')
+tell("beside others", browser.ask("currentFrame().images.kept === currentFrame().images.after"))
 
 drawing = open(f"{folder}/w_0004.svg").read()
-old = browser.ask("shown[2].before")
+old = pixels(2)
 with open(f"{folder}/w_0004.svg", "w") as file:
     file.write(drawing.replace("r='11'", "r='8'"))
-tell("a drawing that is edited is painted again", until(f"shown[2].before !== {old!r} && live.step === 'done'"))
+generation = browser.ask("live.generation")
+tell("a drawing that is edited is painted again", until(f"live.generation > {generation} && {REFINED}") and
+     pixels(2) != old)
 with open(f"{folder}/w_0004.svg", "w") as file:
     file.write("<svg")
-tell("one that is broken is told", until("live.step === 'failed'") and
-     "w_0004.svg" in browser.ask('byId("told").textContent'))
+tell("one that is broken is told", until("byId('told').textContent.includes('w_0004.svg')"))
 with open(f"{folder}/w_0004.svg", "w") as file:
     file.write(drawing)
-tell("until it is mended", until("live.step === 'done' && !byId('told').textContent"))
-steps = 'fetch("state?from=0").then((r) => r.json()).then((told) => [...new Set(told.lines.map((l) => l.step))].join())'
-tell("who asks late gets the frames of every step", browser.ask(steps) == "preview,draft,full")
+tell("until it is mended", until(f"!byId('told').textContent && {REFINED}"))
+with open("kept.conf", "wb") as file:
+    file.write(urllib.request.urlopen(address + "config").read())
+subprocess.run([*sys.argv[5:], folder, "-q", "-c", "kept.conf", "-o", "full/%d.png"], check=False)
+shutil.rmtree("layers")  # which the config wants as well
+same = True
+for k, number in enumerate(browser.ask("frames.map((f) => f.number)")):
+    with open(f"full/{number}.png", "rb") as file:
+        picture = base64.b64encode(file.read()).decode()
+    same = same and browser.ask(f"""(async () => {{ const file = new Image();
+        file.src = "data:image/png;base64,{picture}";
+        await file.decode();
+        const of = (image) => {{ const c = element("canvas"); [c.width, c.height] = [image.width, image.height];
+            c.getContext("2d").drawImage(image, 0, 0); return c.getContext("2d").getImageData(0, 0, c.width, c.height).data; }};
+        const a = of(file), b = of(frames[{k}].images.after);
+        return a.length === b.length && a.every((v, p) => v === b[p]); }})()""")
+tell("what is refined is the command's, to the bit", same)
+wide = []
+for width in 1440, 1024, 390:
+    browser.call("Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=False)
+    wide.append(browser.ask("document.documentElement.scrollWidth <= innerWidth"))
+tell("nothing is wider than a page of 390 px", all(wide))
+browser.ask("save(), 0")
+tell("a file is replaced after a question only", until("byId('asks').open"))
+browser.ask("byId('asks').close('')")
 tell("no script complains", not browser.complaints)
-for name, what in [("kept.conf", "config"), ("kept.html", "report")]:
-    with open(name, "wb") as file:
-        file.write(urllib.request.urlopen(address + what).read())
 browser.call("Browser.close")

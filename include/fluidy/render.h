@@ -197,8 +197,7 @@ typedef struct FlRenderOptions {
     int cache_size;     /**< MiB, beyond which the cache drops what was used least; 0: 8192 */
     const char *stats;  /**< a file for JSON lines about every frame, region and level; NULL: no
                            statistics */
-    const char *report; /**< a folder for the HTML report, index.html; "-": standard output gets
-                           its frames as they are painted, without figures; NULL: no report */
+    const char *report; /**< a folder for the HTML report, index.html; NULL: no report */
     const char
         *dump; /**< a folder for guides, fields and T_temp as pictures and data; NULL: no dump */
     const char *ebsynth; /**< a folder for pairs of guides and ebsynth's command lines; with `merge`

@@ -16,6 +16,7 @@ struct FlLiveConfig {
     const FlArgs *args;
     char *base;         // the file, with what the command line says
     GPtrArray *choices; // Choice
+    GPtrArray *kept;    // the choices that are known to be good
     char *text;         // both
 };
 
@@ -69,18 +70,31 @@ static bool is_output(const FlOption *option)
     return option->scope == FL_SCOPE_RENDER && option->type == FL_OPTION_PATH;
 }
 
-static char *make_portable(const char *section, const char *key, const char *value, void *folder)
+static char *make_portable(const char *section, const char *key, const char *value, void *data)
 {
     const FlOption *option = option_of(section, key);
-    return !option ? g_strdup(value) : is_output(option) ? NULL : absolute(option, value, folder);
+    return option ? absolute(option, value, NULL) : g_strdup(value);
 }
 
-char *fl_live_config_portable(const FlLiveConfig *config)
+/* Beside the drawing, where the program mentions it. */
+static char *path_beside(const char *input)
 {
-    const char *path = config->args->render.config;
-    g_autofree char *relative = path ? g_path_get_dirname(path) : g_strdup(".");
-    g_autofree char *folder = g_canonicalize_filename(relative, NULL);
-    return fl_config_edit_map(config->text, make_portable, folder);
+    g_autofree char *folder =
+        g_file_test(input, G_FILE_TEST_IS_DIR) ? g_strdup(input) : g_path_get_dirname(input);
+    return g_build_filename(folder, "fluidy-svg.conf", NULL);
+}
+
+char *fl_live_config_save(const FlLiveConfig *config, bool replace, GError **error)
+{
+    const char *given = config->args->render.config;
+    g_autofree char *path = given ? g_strdup(given) : path_beside(config->args->render.inputs[0]);
+    g_autofree char *portable = fl_config_edit_map(config->text, make_portable, NULL);
+    const char *text = given ? config->text : portable;
+    if (!replace && g_file_test(path, G_FILE_TEST_EXISTS)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s is there already", path);
+        return NULL;
+    }
+    return g_file_set_contents(path, text, -1, error) ? g_steal_pointer(&path) : NULL;
 }
 
 /* ---- the file and the command line ---------------------------------------------------------- */
@@ -159,6 +173,7 @@ FlLiveConfig *fl_live_config_new(const FlArgs *args, GError **error)
     g_autoptr(FlLiveConfig) config = g_new0(FlLiveConfig, 1);
     config->args = args;
     config->choices = g_ptr_array_new_with_free_func(choice_free);
+    config->kept = g_ptr_array_new_with_free_func(choice_free);
     return fl_live_config_reload(config, error) ? g_steal_pointer(&config) : NULL;
 }
 
@@ -180,6 +195,7 @@ void fl_live_config_free(FlLiveConfig *config)
     if (!config)
         return;
     g_ptr_array_unref(config->choices);
+    g_ptr_array_unref(config->kept);
     g_free(config->base);
     g_free(config->text);
     g_free(config);
@@ -202,6 +218,41 @@ static bool is_section(const char *section)
            strcmp(section, "project") == 0 || strcmp(section, "defaults") == 0;
 }
 
+static Choice *copy_choice(const Choice *choice)
+{
+    Choice *copy = g_new(Choice, 1);
+    *copy = (Choice){g_strdup(choice->section), g_strdup(choice->key), g_strdup(choice->value)};
+    return copy;
+}
+
+static void copy_choices(GPtrArray *from, GPtrArray *to)
+{
+    g_ptr_array_set_size(to, 0);
+    for (guint k = 0; k < from->len; k++)
+        g_ptr_array_add(to, copy_choice(from->pdata[k]));
+}
+
+void fl_live_config_keep(FlLiveConfig *config)
+{
+    copy_choices(config->choices, config->kept);
+}
+
+bool fl_live_config_revert(FlLiveConfig *config)
+{
+    g_autofree char *before = g_strdup(config->text);
+    copy_choices(config->kept, config->choices);
+    apply_choices(config);
+    return strcmp(before, config->text) != 0;
+}
+
+/* Whether the value is one of the option, as far as this is known without the drawing. */
+static bool check_value(const FlOption *option, const char *value, GError **error)
+{
+    const char *const none[] = {NULL};
+    g_autoptr(FlFilm) film = fl_film_open(none);
+    return !*value || fl_film_set(film, NULL, option->name, value, error);
+}
+
 bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char *key,
                            const char *value, GError **error)
 {
@@ -212,6 +263,8 @@ bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char
                     "[%s] %s: cannot be set here, or the value is not valid text", section, key);
         return false;
     }
+    if (!check_value(option, value, error))
+        return false;
     for (guint k = config->choices->len; k > 0; k--) {
         const Choice *choice = config->choices->pdata[k - 1];
         if (strcmp(choice->section, section) == 0 && strcmp(choice->key, key) == 0)
@@ -300,6 +353,7 @@ static void append_style(GString *json, const FlStyleEntry *style)
     fl_json_text(json, "name", style->name);
     fl_json_text(json, "title", style->title);
     fl_json_text(json, "character", style->character);
+    g_string_append_printf(json, ",\"hidden\":%s", style->hidden ? "true" : "false");
     g_string_append_c(json, '}');
 }
 
@@ -314,8 +368,7 @@ char *fl_live_config_options(void)
     }
     g_string_append(json, "],\"styles\":[");
     for (guint k = 0; k < styles->len; k++)
-        if (!((const FlStyleEntry *)styles->pdata[k])->hidden)
-            append_style(json, styles->pdata[k]);
+        append_style(json, styles->pdata[k]);
     g_string_append(json, "]}\n");
     return g_string_free(json, FALSE);
 }

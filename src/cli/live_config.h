@@ -18,8 +18,7 @@ bool fl_live_config_reload(FlLiveConfig *config, GError **error);
 
 /**
  * Makes a choice: a key of the table of options in "project", "defaults" or "region NAME"; ""
- * leaves it to the file. Returns: false with FL_ERROR_USAGE; the value itself is checked by the
- * render.
+ * removes it. Returns: false with FL_ERROR_USAGE, which says what was expected.
  */
 bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char *key,
                            const char *value, GError **error);
@@ -27,8 +26,20 @@ bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char
 /** The file to keep. Borrowed until the next change. */
 const char *fl_live_config_text(const FlLiveConfig *config);
 
-/** The same for a file in any folder, without the names of outputs. To be freed. */
-char *fl_live_config_portable(const FlLiveConfig *config);
+/**
+ * Writes it to the user's config file, or if there is none as fluidy-svg.conf beside the drawing,
+ * with the paths of styles as they read from there.
+ *
+ * replace: a file that is there. Returns: its path, to be freed; NULL with FL_ERROR_EXISTS, or an
+ * error of the file.
+ */
+char *fl_live_config_save(const FlLiveConfig *config, bool replace, GError **error);
+
+/** The choices so far are good ones. */
+void fl_live_config_keep(FlLiveConfig *config);
+
+/** Takes back the choices since fl_live_config_keep(). Returns: false if there were none. */
+bool fl_live_config_revert(FlLiveConfig *config);
 
 /** Appends {"section":{"key":"value",…},…}. */
 void fl_live_config_json(const FlLiveConfig *config, GString *json);

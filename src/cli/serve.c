@@ -1,41 +1,171 @@
 #include "serve.h"
 
 #include "base/json.h"
-#include "config_edit.h"
 #include "file_watch.h"
+#include "live_clients.h"
 #include "live_config.h"
-#include "live_render.h"
+#include "live_drop.h"
+#include "live_socket.h"
 #include "params/options.h"
 
-#include <libsoup/soup.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { TICK_MS = 50, LONGEST_BODY = 1 << 16, ANSWER_BYTES = 4 << 20, SECRET_BYTES = 16 };
+enum {
+    TICK_MS = 200,
+    LONGEST_BODY = 1 << 16,
+    LONGEST_DROP = 64 << 20,
+    SECRET_BYTES = 16,
+    MOST_MESSAGES = 50,
+};
 
 typedef struct Live {
     const FlArgs *args;
     const volatile sig_atomic_t *stop;
     SoupServer *server;
+    FlLiveSocket *socket;
     char *root;     // "/SECRET/": requests without it are refused
     char *hosts[2]; // names of this server in a browser
     FlLiveConfig *config;
-    FlLiveRender *render;
+    FlLiveFilm *film;
+    FlLiveClients *clients;
+    FlLiveDrop *drop;     // files that were dropped on the page; NULL: those of the command line
+    FlLiveDrop *dropping; // files that are on their way
     FlFileWatch *files;
-    char *preview;  // the frame on view, with its neighbours; or NULL
-    char *problem;  // with the config file; or NULL
-    int generation; // counts changes of the config and the files
+    GPtrArray *messages; // JSON objects, since the settings are as they are
+    int generation;      // counts changes of the config and the files
     GMainLoop *loop;
 } Live;
 
+/* ---- the state of the page --------------------------------------------------------------------
+ */
+
+static const char *config_path(const Live *live)
+{
+    const char *path = live->args->render.config;
+    return path ? path : "film.conf";
+}
+
+static char *config_name(const Live *live)
+{
+    return g_path_get_basename(config_path(live));
+}
+
+static void append_command(GString *json, const Live *live)
+{
+    g_autoptr(GPtrArray) words = g_ptr_array_new_with_free_func(g_free);
+    g_autoptr(GString) line = g_string_new("fluidy-svg");
+    for (const char *const *input = live->args->render.inputs; *input; input++)
+        g_ptr_array_add(words, g_strdup(*input));
+    fl_live_film_options(live->args, words);
+    g_ptr_array_add(words, g_strdup("-c"));
+    g_ptr_array_add(words, g_strdup(config_path(live)));
+    for (guint k = 0; k < words->len; k++) {
+        const char *word = words->pdata[k];
+        const bool plain = strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                        "0123456789-_./=%,+") == strlen(word);
+        g_autofree char *quoted = plain ? g_strdup(word) : g_shell_quote(word);
+        g_string_append_printf(line, " %s", quoted);
+    }
+    fl_json_text(json, "command", line->str);
+}
+
+/* All that the page shows besides the film and its pictures; to be freed. */
+static char *state_of(const Live *live)
+{
+    g_autofree char *name = config_name(live);
+    GString *json = g_string_new("{\"state\":{");
+    fl_json_number(json, "generation", live->generation, true);
+    fl_json_text(json, "config", fl_live_config_text(live->config));
+    fl_json_text(json, "file", name);
+    append_command(json, live);
+    g_string_append(json, ",\"settings\":");
+    fl_live_config_json(live->config, json);
+    g_string_append(json, ",\"messages\":[");
+    for (guint k = 0; k < live->messages->len; k++)
+        g_string_append_printf(json, k > 0 ? ",%s" : "%s", (char *)live->messages->pdata[k]);
+    g_string_append(json, "]}}");
+    return g_string_free(json, FALSE);
+}
+
+static void say_state(Live *live)
+{
+    g_autofree char *state = state_of(live);
+    fl_live_clients_say(live->clients, state);
+}
+
+/* {"KIND":"TEXT"}, to all pages. */
+static void say(Live *live, const char *kind, const char *text, bool stays)
+{
+    g_autoptr(GString) json = g_string_new("{");
+    fl_json_text(json, kind, text);
+    g_string_append_c(json, '}');
+    fl_live_clients_say(live->clients, json->str);
+    if (stays && live->messages->len < MOST_MESSAGES)
+        g_ptr_array_add(live->messages, g_strdup(json->str));
+}
+
 /* ---- painting ------------------------------------------------------------------------------- */
 
-static void paint_anew(Live *live)
+/* anew: the files are read again. */
+static void paint_anew(Live *live, bool anew)
 {
-    g_autofree char *config = fl_live_config_portable(live->config);
-    g_autofree char *detail = fl_config_edit_get(config, "defaults", "detail");
+    const char *const *inputs =
+        live->drop ? fl_live_drop_inputs(live->drop) : live->args->render.inputs;
+    g_ptr_array_set_size(live->messages, 0);
     live->generation++;
-    fl_live_render_start(live->render, config, live->preview, g_strcmp0(detail, "draft") == 0);
+    fl_live_film_set(live->film, live->generation, inputs, anew, config_path(live),
+                     fl_live_config_text(live->config));
+    say_state(live);
+    fl_live_clients_begin(live->clients, live->generation);
+}
+
+/* A choice whose first draft fails is taken back. */
+static void on_done(FlLiveJob *job, void *data)
+{
+    Live *live = data;
+    const bool current = job->generation == live->generation;
+    const bool failed = current && job->error && job->work != FL_LIVE_SAMPLE;
+    g_autofree char *words = failed ? g_strdup(job->error->message) : NULL;
+    const bool first = job->work == FL_LIVE_DRAFT;
+    if (current && !failed && first)
+        fl_live_config_keep(live->config);
+    fl_live_clients_take(live->clients, job);
+    if (failed && first && fl_live_config_revert(live->config)) {
+        paint_anew(live, false);
+        say(live, "refused", words, false);
+    } else if (failed)
+        say(live, "error", words, true);
+}
+
+static void on_progress(const char *stage, int done, int total, void *data)
+{
+    Live *live = data;
+    g_autoptr(GString) json = g_string_new("{\"progress\":{");
+    fl_json_text(json, "stage", stage);
+    fl_json_number(json, "done", done, true);
+    fl_json_number(json, "total", total, true);
+    g_string_append(json, "}}");
+    fl_live_clients_say(live->clients, json->str);
+}
+
+static void on_warning(const char *message, void *data)
+{
+    say(data, "warning", message, true);
+}
+
+static void watch_input(const char *path, void *data)
+{
+    const Live *live = data;
+    fl_file_watch_add(live->files, path);
+}
+
+static void watch_anew(Live *live)
+{
+    g_autoptr(FlFileWatch) before = live->files;
+    live->files = fl_file_watch_new(&live->args->render);
+    if (before)
+        fl_file_watch_add_all(live->files, before);
 }
 
 /* Looks whether it is time to end, and for changed files. */
@@ -47,13 +177,11 @@ static gboolean on_tick(void *data)
         g_main_loop_quit(live->loop);
     if (*live->stop || !fl_file_watch_has_settled(live->files))
         return G_SOURCE_CONTINUE;
-    g_autoptr(FlFileWatch) before = live->files;
-    live->files = fl_file_watch_new(&live->args->render);
-    fl_file_watch_add_all(live->files, before);
-    g_clear_pointer(&live->problem, g_free);
-    if (!fl_live_config_reload(live->config, &error))
-        live->problem = g_strdup(error->message);
-    paint_anew(live);
+    watch_anew(live);
+    const bool read = fl_live_config_reload(live->config, &error);
+    paint_anew(live, true);
+    if (!read)
+        say(live, "error", error->message, true);
     return G_SOURCE_CONTINUE;
 }
 
@@ -94,100 +222,25 @@ static void get_options(Live *live, SoupServerMessage *message, GHashTable *quer
     answer(message, "application/json", json, strlen(json));
 }
 
-static const char *config_name(const Live *live)
-{
-    const char *path = live->args->render.config;
-    const char *slash = path ? strrchr(path, '/') : NULL;
-    return slash ? slash + 1 : path ? path : "film.conf";
-}
-
 static void get_config(Live *live, SoupServerMessage *message, GHashTable *query)
 {
     const char *text = fl_live_config_text(live->config);
+    g_autofree char *name = config_name(live);
     answer(message, "text/plain; charset=utf-8", text, strlen(text));
-    attach(message, config_name(live));
+    attach(message, name);
 }
 
-static void get_report(Live *live, SoupServerMessage *message, GHashTable *query)
-{
-    const FlLiveState state = fl_live_render_state(live->render);
-    if (state.step != FL_LIVE_DONE) {
-        refuse(message, SOUP_STATUS_NOT_FOUND, "the film is still being painted");
-        return;
-    }
-    answer(message, "text/html; charset=utf-8", state.page->str, state.page->len);
-    attach(message, "index.html");
-}
-
-static int number_in(GHashTable *query, const char *name)
-{
-    const char *text = query ? g_hash_table_lookup(query, name) : NULL;
-    return text ? (int)CLAMP(g_ascii_strtoll(text, NULL, 10), 0, G_MAXINT) : 0;
-}
-
-/* A name, and a list of what are JSON objects already: the first of many. */
-static void append_objects(GString *json, const char *name, const GPtrArray *objects, guint from)
-{
-    const gsize start = json->len;
-    g_string_append_printf(json, ",\"%s\":[", name);
-    for (guint k = from; k < objects->len && json->len - start < ANSWER_BYTES; k++)
-        g_string_append_printf(json, "%s%s", k > from ? "," : "", (const char *)objects->pdata[k]);
-    g_string_append_c(json, ']');
-}
-
-static void append_command(GString *json, const Live *live)
-{
-    g_autoptr(GPtrArray) words = g_ptr_array_new_with_free_func(g_free);
-    g_autoptr(GString) line = g_string_new("fluidy-svg");
-    for (const char *const *input = live->args->render.inputs; *input; input++)
-        g_ptr_array_add(words, g_strdup(*input));
-    fl_live_render_options(live->args, words);
-    g_ptr_array_add(words, g_strdup("-c"));
-    g_ptr_array_add(
-        words, g_strdup(live->args->render.config ? live->args->render.config : config_name(live)));
-    for (guint k = 0; k < words->len; k++) {
-        const char *word = words->pdata[k];
-        const bool plain = strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                        "0123456789-_./=%,+") == strlen(word);
-        g_autofree char *quoted = plain ? g_strdup(word) : g_shell_quote(word);
-        g_string_append_printf(line, " %s", quoted);
-    }
-    fl_json_text(json, "command", line->str);
-}
-
-/* Everything that changes; ?generation=N&from=K says which config the page has, and how many lines.
- */
-static void get_state(Live *live, SoupServerMessage *message, GHashTable *query)
-{
-    const FlLiveState state = fl_live_render_state(live->render);
-    const bool same = number_in(query, "generation") == live->generation;
-    const guint from = same ? (guint)number_in(query, "from") : 0;
-    g_autoptr(GString) json = g_string_new("{");
-    fl_json_number(json, "from", from, true);
-    fl_json_number(json, "generation", live->generation, true);
-    fl_json_number(json, "total", state.lines->len, true);
-    fl_json_text(json, "step", fl_live_step_name(state.step));
-    fl_json_text(json, "problem", live->problem);
-    g_string_append_printf(json, ",\"progress\":%s", state.progress ? state.progress : "null");
-    append_objects(json, "messages", state.messages, 0);
-    append_objects(json, "lines", state.lines, from);
-    if (!same) {
-        fl_json_text(json, "config", fl_live_config_text(live->config));
-        fl_json_text(json, "file", config_name(live));
-        append_command(json, live);
-        g_string_append(json, ",\"settings\":");
-        fl_live_config_json(live->config, json);
-    }
-    g_string_append_c(json, '}');
-    answer(message, "application/json", json->str, json->len);
-}
-
-/* section, key, value: a choice; frame: the number of the frame that is looked at. */
-static void post_choice(Live *live, SoupServerMessage *message, GHashTable *query)
+static GHashTable *form_of(SoupServerMessage *message)
 {
     SoupMessageBody *body = soup_server_message_get_request_body(message);
     g_autofree char *text = g_strndup(body->data ? body->data : "", (gsize)body->length);
-    g_autoptr(GHashTable) form = soup_form_decode(text);
+    return soup_form_decode(text);
+}
+
+/* section, key, value: a choice. The answer is the generation of the settings with it. */
+static void post_choice(Live *live, SoupServerMessage *message, GHashTable *query)
+{
+    g_autoptr(GHashTable) form = form_of(message);
     g_autoptr(GError) error = NULL;
     const char *section = g_hash_table_lookup(form, "section");
     const char *key = g_hash_table_lookup(form, "key");
@@ -200,11 +253,51 @@ static void post_choice(Live *live, SoupServerMessage *message, GHashTable *quer
         refuse(message, SOUP_STATUS_BAD_REQUEST, error->message);
         return;
     }
-    g_clear_pointer(&live->preview, g_free);
-    if (g_hash_table_contains(form, "frame"))
-        live->preview = g_strdup_printf("%d~1", number_in(form, "frame"));
-    paint_anew(live);
-    answer(message, "text/plain", "chosen\n", strlen("chosen\n"));
+    paint_anew(live, false);
+    g_autofree char *generation = g_strdup_printf("%d\n", live->generation);
+    answer(message, "text/plain", generation, strlen(generation));
+}
+
+/* replace=1: a file that is there already as well. */
+static void post_save(Live *live, SoupServerMessage *message, GHashTable *query)
+{
+    g_autoptr(GHashTable) form = form_of(message);
+    g_autoptr(GError) error = NULL;
+    const bool replace = g_strcmp0(g_hash_table_lookup(form, "replace"), "1") == 0;
+    if (live->drop) {
+        refuse(message, SOUP_STATUS_BAD_REQUEST,
+               "the drawing was dropped here, so its folder is not known: download the config");
+        return;
+    }
+    g_autofree char *path = fl_live_config_save(live->config, replace, &error);
+    if (!path) {
+        const bool exists = g_error_matches(error, FL_ERROR, FL_ERROR_EXISTS);
+        refuse(message, exists ? SOUP_STATUS_CONFLICT : SOUP_STATUS_BAD_REQUEST, error->message);
+        return;
+    }
+    watch_anew(live); // which has not seen this change
+    answer(message, "text/plain; charset=utf-8", path, strlen(path));
+}
+
+/* ?name=NAME&first=1&last=1: one of several files, which are the drawing from the last one on. */
+static void post_drop(Live *live, SoupServerMessage *message, GHashTable *query)
+{
+    g_autoptr(GError) error = NULL;
+    SoupMessageBody *body = soup_server_message_get_request_body(message);
+    const char *name = query ? g_hash_table_lookup(query, "name") : NULL;
+    const bool first = query && g_hash_table_contains(query, "first");
+    if (first)
+        fl_live_drop_begin(&live->dropping);
+    if (!name || !fl_live_drop_add(live->dropping, name, body->data, (gsize)body->length, &error)) {
+        refuse(message, SOUP_STATUS_BAD_REQUEST, error ? error->message : "expected a name");
+        return;
+    }
+    if (g_hash_table_contains(query, "last")) {
+        fl_live_drop_free(live->drop);
+        live->drop = g_steal_pointer(&live->dropping);
+        paint_anew(live, true);
+    }
+    answer(message, "text/plain", "dropped\n", strlen("dropped\n"));
 }
 
 /* ---- requests ------------------------------------------------------------------------------- */
@@ -213,8 +306,8 @@ static const struct Resource {
     const char *method, *name;
     void (*answer)(Live *live, SoupServerMessage *message, GHashTable *query);
 } resources[] = {
-    {"GET", "", get_page},         {"GET", "state", get_state},   {"GET", "options", get_options},
-    {"GET", "config", get_config}, {"GET", "report", get_report}, {"POST", "choice", post_choice},
+    {"GET", "", get_page},           {"GET", "options", get_options}, {"GET", "config", get_config},
+    {"POST", "choice", post_choice}, {"POST", "save", post_save},     {"POST", "drop", post_drop},
 };
 
 static bool is_own_host(const Live *live, const char *host)
@@ -256,6 +349,7 @@ static void on_headers(SoupServer *server, SoupServerMessage *message, const cha
     const Live *live = data;
     SoupMessageHeaders *headers = soup_server_message_get_request_headers(message);
     const SoupEncoding encoding = soup_message_headers_get_encoding(headers);
+    const bool drops = g_str_has_suffix(path, "/drop");
     protect(message);
     if (!is_own_page(live, message))
         refuse(message, SOUP_STATUS_FORBIDDEN, "this page is for a browser on this machine");
@@ -263,8 +357,10 @@ static void on_headers(SoupServer *server, SoupServerMessage *message, const cha
         refuse(message, SOUP_STATUS_NOT_FOUND,
                "not found; open the full address that fluidy-svg printed");
     else if ((encoding != SOUP_ENCODING_NONE && encoding != SOUP_ENCODING_CONTENT_LENGTH) ||
-             soup_message_headers_get_content_length(headers) > LONGEST_BODY)
-        refuse(message, SOUP_STATUS_REQUEST_ENTITY_TOO_LARGE, "the request is larger than 64 KiB");
+             soup_message_headers_get_content_length(headers) >
+                 (drops ? LONGEST_DROP : LONGEST_BODY))
+        refuse(message, SOUP_STATUS_REQUEST_ENTITY_TOO_LARGE,
+               drops ? "the file is larger than 64 MiB" : "the request is larger than 64 KiB");
 }
 
 static void on_request(SoupServer *server, SoupServerMessage *message, const char *path,
@@ -279,6 +375,21 @@ static void on_request(SoupServer *server, SoupServerMessage *message, const cha
             return;
         }
     refuse(message, SOUP_STATUS_NOT_FOUND, "not found");
+}
+
+/* A page that looks: its first message is the state. */
+static void on_page(SoupServer *server, SoupServerMessage *message, const char *path,
+                    SoupWebsocketConnection *socket, void *data)
+{
+    Live *live = data;
+    if (!is_own_page(live, message)) { // this connection needs no answer of on_headers()
+        soup_websocket_connection_close(socket, SOUP_WEBSOCKET_CLOSE_POLICY_VIOLATION, NULL);
+        return;
+    }
+    if (fl_live_clients_stuck(live->clients)) // perhaps what was wrong is mended
+        paint_anew(live, false);
+    g_autofree char *state = state_of(live);
+    fl_live_clients_add(live->clients, socket, state);
 }
 
 /* ---- the whole ------------------------------------------------------------------------------ */
@@ -322,58 +433,47 @@ static char *new_secret(GError **error)
 
 static bool open_server(Live *live, GError **error)
 {
-    g_autoptr(GError) problem = NULL;
-    const int port = live->args->port;
     live->root = new_secret(error);
     if (!live->root)
         return false;
+    g_autofree char *pictures = g_strconcat(live->root, "pictures", NULL);
     live->server = soup_server_new("server-header", "fluidy-svg", NULL);
     soup_server_add_early_handler(live->server, NULL, on_headers, live, NULL);
     soup_server_add_handler(live->server, NULL, on_request, live, NULL);
-    if (!soup_server_listen_local(live->server, (guint)port, SOUP_SERVER_LISTEN_IPV4_ONLY,
-                                  &problem)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT,
-                    "--serve: port %d of 127.0.0.1: %s; choose another one, or none for any", port,
-                    problem->message);
+    soup_server_add_websocket_handler(live->server, pictures, NULL, NULL, on_page, live, NULL);
+    live->socket = fl_live_socket_new(live->server, live->args->port, error);
+    if (!live->socket)
         return false;
-    }
-    GSList *uris = soup_server_get_uris(live->server);
-    const int bound = g_uri_get_port(uris->data);
-    g_slist_free_full(uris, (GDestroyNotify)g_uri_unref);
+    const int bound = fl_live_socket_port(live->socket);
     live->hosts[0] = g_strdup_printf("127.0.0.1:%d", bound);
     live->hosts[1] = g_strdup_printf("localhost:%d", bound);
     return true;
 }
 
-static void watch_input(const char *path, void *data)
-{
-    const Live *live = data;
-    fl_file_watch_add(live->files, path);
-}
-
-/* Reads a few frames, which shows what is wrong with the command line, and how large they are. */
+/* Reads a few frames, which shows what is wrong with the command line. */
 static bool prepare(Live *live, GError **error)
 {
     FlRenderOptions few = live->args->render;
     if (!few.frames)
         few.frames = "~1";
+    (void)fl_start_workers(); // before there are threads
     g_autoptr(FlRegionList) list = fl_region_list_new(&few, error);
-    if (!list || !(live->config = fl_live_config_new(live->args, error)))
-        return false;
-    live->preview = live->args->render.frames ? NULL : g_strdup("~1");
-    live->render = fl_live_render_new(live->args, list->width, MAX(list->width, list->height),
-                                      watch_input, live, error);
-    return live->render && open_server(live, error);
+    return list && (live->config = fl_live_config_new(live->args, error)) &&
+           open_server(live, error);
 }
 
 static void run(Live *live)
 {
-    live->files = fl_file_watch_new(&live->args->render);
+    const FlLiveCalls calls = {on_done, on_progress, on_warning, watch_input, live};
+    live->messages = g_ptr_array_new_with_free_func(g_free);
+    live->film = fl_live_film_new(live->args, &calls);
+    live->clients = fl_live_clients_new(live->film);
+    watch_anew(live);
     live->loop = g_main_loop_new(NULL, FALSE);
     const guint tick = g_timeout_add(TICK_MS, on_tick, live);
     printf("http://%s%s\n", live->hosts[0], live->root);
     fflush(stdout);
-    paint_anew(live);
+    paint_anew(live, false);
     g_main_loop_run(live->loop);
     g_source_remove(tick);
 }
@@ -382,16 +482,19 @@ static void clear(Live *live)
 {
     if (live->server)
         soup_server_disconnect(live->server);
+    fl_live_film_free(live->film);
+    fl_live_clients_free(live->clients);
+    fl_live_socket_free(live->socket);
     g_clear_object(&live->server);
-    fl_live_render_free(live->render);
     fl_live_config_free(live->config);
     fl_file_watch_free(live->files);
+    fl_live_drop_free(live->drop);
+    fl_live_drop_free(live->dropping);
+    g_clear_pointer(&live->messages, g_ptr_array_unref);
     g_clear_pointer(&live->loop, g_main_loop_unref);
     g_free(live->hosts[0]);
     g_free(live->hosts[1]);
     g_free(live->root);
-    g_free(live->preview);
-    g_free(live->problem);
 }
 
 bool fl_serve(const FlArgs *args, const volatile sig_atomic_t *stop, GError **error)

@@ -24,9 +24,8 @@
 struct FlReport {
     const FlPlan *plan;
     const FlBackground *background;
-    FlAtomicFile file; // unused if the page goes to standard output
-    FILE *out;         // its stream, or standard output
-    bool measures;     // figures and guides, for which everything must be painted
+    FlAtomicFile file;
+    FILE *out;         // its stream
     int width, height; // of the pictures, px
     int every;         // every n-th frame has pictures
     double seconds[3]; // paint, compose, write: sums
@@ -55,16 +54,6 @@ static void choose_size(FlReport *report)
 
 static void write_film(const FlReport *report);
 
-bool fl_report_streams(const FlRenderOptions *options)
-{
-    return options->report && strcmp(options->report, "-") == 0;
-}
-
-bool fl_report_measures(const FlRenderOptions *options)
-{
-    return options->report && !fl_report_streams(options);
-}
-
 static void write_part(FILE *out, FlPagePart part)
 {
     g_autoptr(GBytes) text = fl_page_part(part);
@@ -77,13 +66,9 @@ static bool begin(FlReport *report, const char *folder, GError **error)
 {
     g_autofree char *path = g_build_filename(folder, "index.html", NULL);
     const FlRenderOptions *o = &report->plan->options;
-    report->measures = fl_report_measures(o);
-    report->out = stdout;
-    if (report->measures &&
-        !fl_atomic_open(&report->file, path, o->overwrite != FL_OVERWRITE_REFUSE, error))
+    if (!fl_atomic_open(&report->file, path, o->overwrite != FL_OVERWRITE_REFUSE, error))
         return false;
-    if (report->measures)
-        report->out = report->file.stream;
+    report->out = report->file.stream;
     write_part(report->out, FL_PAGE_HEAD);
     write_film(report);
     return true;
@@ -138,7 +123,7 @@ static bool shows_guides(const FlReport *report, int frame)
 
 bool fl_report_wants_view(const FlReport *report, int frame)
 {
-    return report && report->measures && shows_guides(report, frame);
+    return report && shows_guides(report, frame);
 }
 
 /* Counts the matches of a region in its recording. */
@@ -156,7 +141,7 @@ static bool add_use(FlReport *report, const FlPaintedRegion *painted, GError **e
 bool fl_report_guides(FlReport *report, int p, const FlPaintedRegion *painted, int frame,
                       const FlGuides *guides, GError **error)
 {
-    if (!report || !report->measures)
+    if (!report)
         return true;
     if (frame % painted->settings->hold != 0) { // the picture is the last one
         report->flicker[p].change = 0;
@@ -256,16 +241,6 @@ static void write_seconds(FlReport *report, const FlReportFrame *frame)
     fputc(']', report->out);
 }
 
-/* Readers of standard output see every frame once it is painted. */
-static bool send_page(const FlReport *report, GError **error)
-{
-    if (fflush(report->out) == 0 && !ferror(report->out))
-        return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "standard output: the page cannot be written: %s",
-                g_strerror(errno));
-    return false;
-}
-
 bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **error)
 {
     if (!report)
@@ -286,7 +261,7 @@ bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **erro
         fl_guide_view_reset(&report->view);
     }
     fputs("});</script>\n", out);
-    return report->measures || send_page(report, error);
+    return true;
 }
 
 /* ---- the whole ------------------------------------------------------------------------------ */
@@ -314,10 +289,9 @@ static void write_region(const FlReport *report, int r, bool finished)
         g_autofree char *style = g_path_get_basename(plan->painted[p].style->path);
         fputs(",style:", out);
         fl_script_string(out, style);
-        const bool measured = finished && report->measures;
         fputs(",change:", out);
         fl_script_number(out,
-                         measured ? fl_flicker_of_exemplar(plan->painted[p].style->exemplar) : NAN);
+                         finished ? fl_flicker_of_exemplar(plan->painted[p].style->exemplar) : NAN);
         fputs(",seconds:", out);
         fl_script_number(out, finished ? report->painter_seconds[p] : NAN);
     }
@@ -366,11 +340,11 @@ static void write_film(const FlReport *report)
     fputs(",paper:", out);
     fl_script_colour(out, report->background->flat);
     fprintf(out,
-            ",width:%d,height:%d,drawn:%d,shown:[%d,%d],every:%d,total:%d,measured:%s,"
+            ",width:%d,height:%d,drawn:%d,shown:[%d,%d],every:%d,total:%d,measured:true,"
             "transparent:%s,fps:",
             plan->width, plan->height, fl_drawing_width(plan->drawing), report->width,
             report->height, report->every, fl_drawing_frames(plan->drawing),
-            report->measures ? "true" : "false", report->background->none ? "true" : "false");
+            report->background->none ? "true" : "false");
     fl_script_number(out, fps > 0 ? fps : 24);
     fputs(",peak:null,uses:[],", out);
     write_regions(report, false);
@@ -395,5 +369,5 @@ bool fl_report_finish(FlReport *report, GError **error)
     if (!write_results(report, error))
         return false;
     write_part(report->out, FL_PAGE_REST);
-    return report->measures ? fl_atomic_commit(&report->file, error) : send_page(report, error);
+    return fl_atomic_commit(&report->file, error);
 }

@@ -5,12 +5,6 @@
 #include "compose/composite.h"
 #include "job/plan.h"
 
-/** Returns: true if the report goes to standard output. */
-bool fl_report_streams(const FlRenderOptions *options);
-
-/** Returns: true if there is a report with figures and guides, which needs all regions painted. */
-bool fl_report_measures(const FlRenderOptions *options);
-
 /** A report being written. Its memory does not grow with the number of frames. */
 typedef struct FlReport FlReport;
 
@@ -24,8 +18,7 @@ typedef struct FlReportFrame {
 
 /**
  * Opens folder/index.html; plan and background must outlive the report. The file appears with
- * fl_report_finish(). The folder "-" is standard output, where each frame appears once it is
- * painted; figures and guides are left out there, since paint may come from the cache.
+ * fl_report_finish().
  *
  * Returns: to be freed with fl_report_free(); NULL with FL_ERROR_EXISTS, FL_ERROR_OUTPUT or
  * FL_ERROR_NO_MEMORY.

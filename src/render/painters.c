@@ -227,7 +227,7 @@ void fl_painters_finish(FlPainters *painters)
 bool fl_painters_init(FlPainters *painters, GError **error)
 {
     const FlPlan *plan = painters->plan;
-    const bool energies = plan->options.stats || fl_report_measures(&plan->options);
+    const bool energies = plan->options.stats || plan->options.report;
     for (int p = 0; p < painters->n; p++)
         if (painters->fresh[p])
             fl_painter_place(painters->painter[p], fl_plan_hides(plan, plan->painted[p].region));

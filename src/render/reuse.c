@@ -60,7 +60,7 @@ void fl_reuse_init(FlReuse *reuse, FlStore *cache, const FlShapes *shapes,
 void fl_reuse_recall(FlReuse *reuse, const FlPlan *plan, int p)
 {
     const FlRenderOptions *o = &plan->options;
-    reuse->takes = !fl_report_measures(o) && !o->dump && !o->ebsynth;
+    reuse->takes = !o->report && !o->dump && !o->ebsynth;
     if (!reuse->cache)
         return;
     reuse->slot = slot_of(plan, p);

@@ -37,7 +37,7 @@ void fl_summary_of_render(const FlPlan *plan, const FlStats *stats)
     if (gaps)
         send_note(plan, gaps);
     send_note(plan, seconds);
-    if (!fl_report_measures(&plan->options))
+    if (!plan->options.report)
         return;
     g_autofree char *page = g_strdup_printf("report: %s/index.html", plan->options.report);
     send_note(plan, page);

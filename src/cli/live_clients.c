@@ -1,0 +1,281 @@
+#include "live_clients.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    CREDIT = 16, // pictures on their way to a page
+    LEAST = 3,   // of them for a job, which gives up to three
+    LAG = 6,     // frames by which drafts follow the one that is looked at, one after the other
+    PING_S = 20,
+};
+
+/* What a page has of a frame. */
+enum { HAS_DRAFT = 1, HAS_FRAME = 2, HAS_DRAWING = 4 };
+
+typedef struct Client {
+    FlLiveClients *clients;
+    SoupWebsocketConnection *socket;
+    int look, next; // frames: that is looked at, and that follows the last draft
+    int credit;
+    bool hidden;
+    uint8_t *has;  // by frame
+    char *region;  // of samples; "": all
+    int sampled;   // the frame of samples
+    guint samples; // that it has; all of them: none is wanted
+} Client;
+
+struct FlLiveClients {
+    FlLiveFilm *film;
+    GPtrArray *all;    // Client
+    GPtrArray *styles; // FlStyleEntry
+    int generation;
+    int n_frames; // 0: not known yet
+    char *facts;  // for those who come later
+    bool busy;    // a job is on its way
+    bool stuck;   // drafts fail
+    bool spoilt;  // frames do
+};
+
+static void client_free(void *data)
+{
+    Client *client = data;
+    g_signal_handlers_disconnect_by_data(client->socket, client);
+    g_object_unref(client->socket);
+    g_free(client->has);
+    g_free(client->region);
+    g_free(client);
+}
+
+FlLiveClients *fl_live_clients_new(FlLiveFilm *film)
+{
+    FlLiveClients *clients = g_new0(FlLiveClients, 1);
+    clients->film = film;
+    clients->styles = fl_style_list();
+    clients->all = g_ptr_array_new_with_free_func(client_free);
+    return clients;
+}
+
+void fl_live_clients_free(FlLiveClients *clients)
+{
+    if (!clients)
+        return;
+    g_ptr_array_unref(clients->all);
+    g_ptr_array_unref(clients->styles);
+    g_free(clients->facts);
+    g_free(clients);
+}
+
+bool fl_live_clients_stuck(const FlLiveClients *clients)
+{
+    return clients->stuck;
+}
+
+/* ---- the next job -----------------------------------------------------------------------------
+ */
+
+/* The first frame from `start` on, in a loop, that lacks something; -1: none. */
+static int find_lack(const Client *client, int start, int what)
+{
+    const int n = client->clients->n_frames;
+    for (int k = 0; k < n; k++)
+        if (!(client->has[(start + k) % n] & what))
+            return (start + k) % n;
+    return -1;
+}
+
+static bool wants_draft(Client *client, FlLiveJob *job)
+{
+    const int n = client->clients->n_frames;
+    const int lag = n > 0 ? (client->look - client->next + n) % n : 0;
+    const bool goes_on = n > 0 && client->has[client->look % n] == 0 && lag > 0 && lag <= LAG &&
+                         client->has[(client->next + n - 1) % n] & HAS_DRAFT;
+    const int frame =
+        n > 0 ? find_lack(client, goes_on ? client->next : client->look, HAS_DRAFT) : client->look;
+    job->work = FL_LIVE_DRAFT;
+    job->frame = frame;
+    job->with_drawing = n == 0 || (frame >= 0 && !(client->has[frame] & HAS_DRAWING));
+    return frame >= 0;
+}
+
+static bool wants_sample(Client *client, FlLiveJob *job)
+{
+    const GPtrArray *styles = client->clients->styles;
+    while (client->samples < styles->len &&
+           ((const FlStyleEntry *)styles->pdata[client->samples])->hidden)
+        client->samples++;
+    job->work = FL_LIVE_SAMPLE;
+    job->frame = MIN(client->sampled, client->clients->n_frames - 1);
+    job->region = *client->region ? client->region : NULL;
+    job->style = (int)client->samples;
+    job->asker = client;
+    return client->samples < styles->len;
+}
+
+/* Each frame follows from those before. */
+static bool wants_frame(Client *client, FlLiveJob *job)
+{
+    job->work = FL_LIVE_FRAME;
+    job->frame = client->clients->spoilt ? -1 : find_lack(client, 0, HAS_FRAME);
+    return job->frame >= 0;
+}
+
+static void go_on(FlLiveClients *clients)
+{
+    static bool (*const wants[])(Client *, FlLiveJob *) = {wants_draft, wants_sample, wants_frame};
+    for (size_t w = 0; w < G_N_ELEMENTS(wants); w++)
+        for (guint k = 0; k < clients->all->len && !clients->busy && !clients->stuck; k++) {
+            Client *client = clients->all->pdata[k];
+            FlLiveJob job = {.generation = clients->generation};
+            if (client->hidden || client->credit < LEAST || !wants[w](client, &job))
+                continue;
+            clients->busy = true;
+            fl_live_film_ask(clients->film, &job);
+        }
+}
+
+/* ---- what pages say ---------------------------------------------------------------------------
+ */
+
+static int number_after(const char *text, const char *word, int most)
+{
+    return CLAMP(atoi(text + strlen(word)), 0, most);
+}
+
+static void on_text(SoupWebsocketConnection *socket, int type, GBytes *message, void *data)
+{
+    Client *client = data;
+    FlLiveClients *clients = client->clients;
+    gsize n = 0;
+    const char *bytes = g_bytes_get_data(message, &n);
+    g_autofree char *text = g_strndup(bytes ? bytes : "", n);
+    const int last = MAX(clients->n_frames - 1, 0);
+    if (g_str_has_prefix(text, "look "))
+        client->look = number_after(text, "look ", last);
+    else if (strcmp(text, "more") == 0)
+        client->credit = MIN(client->credit + 1, CREDIT);
+    else if (g_str_has_prefix(text, "hide "))
+        client->hidden = number_after(text, "hide ", 1);
+    else if (g_str_has_prefix(text, "sample ")) {
+        const char *region = strchr(text + strlen("sample "), ' ');
+        client->sampled = number_after(text, "sample ", last);
+        client->samples = 0;
+        g_free(client->region);
+        client->region = g_strdup(region ? region + 1 : "");
+    }
+    go_on(clients);
+}
+
+static void on_closed(SoupWebsocketConnection *socket, void *data)
+{
+    Client *client = data;
+    g_ptr_array_remove_fast(client->clients->all, client);
+}
+
+static void forget(Client *client, int n_frames)
+{
+    g_free(client->has);
+    client->has = g_new0(uint8_t, MAX(n_frames, 1));
+    client->look = CLAMP(client->look, 0, MAX(n_frames - 1, 0));
+}
+
+static void say_to(const Client *client, const char *json)
+{
+    if (soup_websocket_connection_get_state(client->socket) == SOUP_WEBSOCKET_STATE_OPEN)
+        soup_websocket_connection_send_text(client->socket, json);
+}
+
+void fl_live_clients_add(FlLiveClients *clients, SoupWebsocketConnection *socket,
+                         const char *greeting)
+{
+    Client *client = g_new0(Client, 1);
+    *client = (Client){.clients = clients,
+                       .socket = g_object_ref(socket),
+                       .credit = CREDIT,
+                       .region = g_strdup(""),
+                       .samples = clients->styles->len};
+    forget(client, clients->n_frames);
+    soup_websocket_connection_set_keepalive_interval(socket, PING_S);
+    g_ptr_array_add(clients->all, client);
+    g_signal_connect(socket, "message", G_CALLBACK(on_text), client);
+    g_signal_connect(socket, "closed", G_CALLBACK(on_closed), client);
+    say_to(client, greeting);
+    if (clients->facts)
+        say_to(client, clients->facts);
+    go_on(clients);
+}
+
+void fl_live_clients_say(FlLiveClients *clients, const char *json)
+{
+    for (guint k = 0; k < clients->all->len; k++)
+        say_to(clients->all->pdata[k], json);
+}
+
+/* ---- pictures ---------------------------------------------------------------------------------
+ */
+
+void fl_live_clients_begin(FlLiveClients *clients, int generation)
+{
+    clients->generation = generation;
+    clients->stuck = clients->spoilt = false;
+    for (guint k = 0; k < clients->all->len; k++) {
+        Client *client = clients->all->pdata[k];
+        for (int f = 0; f < clients->n_frames; f++)
+            client->has[f] &= HAS_DRAWING;
+    }
+    go_on(clients);
+}
+
+static void take_facts(FlLiveClients *clients, const FlLiveJob *job)
+{
+    int n = 0;
+    g_free(clients->facts);
+    clients->facts = g_strdup_printf("{\"film\":%s}", job->facts);
+    const char *list = strstr(job->facts, "\"numbers\":[");
+    for (const char *at = list; at && *at != ']'; at++)
+        n += *at == ',' || *at == '[';
+    for (guint k = 0; k < clients->all->len && (job->reread || n != clients->n_frames); k++)
+        forget(clients->all->pdata[k], n);
+    clients->n_frames = n;
+    fl_live_clients_say(clients, clients->facts);
+}
+
+/* Pictures go to all pages that lack them, samples to the one that has asked. */
+static void give(Client *client, const FlLiveJob *job)
+{
+    const bool sample = job->work == FL_LIVE_SAMPLE;
+    const int what = job->work == FL_LIVE_FRAME ? HAS_FRAME | HAS_DRAFT
+                     : job->with_drawing        ? HAS_DRAFT | HAS_DRAWING
+                                                : HAS_DRAFT;
+    if (sample ? client != job->asker || job->style != (int)client->samples
+               : client->hidden || client->credit < LEAST || !(what & ~client->has[job->frame]))
+        return;
+    if (sample)
+        client->samples++;
+    else
+        client->has[job->frame] |= (uint8_t)what;
+    if (job->work == FL_LIVE_DRAFT)
+        client->next = (job->frame + 1) % client->clients->n_frames;
+    for (guint k = 0; k < job->pictures->len; k++) {
+        client->credit--;
+        if (soup_websocket_connection_get_state(client->socket) == SOUP_WEBSOCKET_STATE_OPEN)
+            soup_websocket_connection_send_message(client->socket, SOUP_WEBSOCKET_DATA_BINARY,
+                                                   job->pictures->pdata[k]);
+    }
+}
+
+void fl_live_clients_take(FlLiveClients *clients, FlLiveJob *job)
+{
+    const bool current = job->generation == clients->generation;
+    clients->busy = false;
+    if (job->facts)
+        take_facts(clients, job);
+    if (current && job->error && job->work != FL_LIVE_SAMPLE) {
+        clients->stuck |= job->work == FL_LIVE_DRAFT;
+        clients->spoilt = true;
+    } else if (current)
+        for (guint k = 0; k < clients->all->len; k++)
+            give(clients->all->pdata[k], job);
+    fl_live_job_free(job);
+    go_on(clients);
+}

@@ -1,0 +1,381 @@
+#include "live_film.h"
+
+#include "base/json.h"
+#include "params/options.h"
+
+#include <string.h>
+
+enum { DRAFT_SIDE = 500, TELL_MS = 100, HEAD_NUMBERS = 6 };
+
+struct FlLiveFilm {
+    const FlArgs *args;
+    FlLiveCalls calls;
+    GThread *thread;
+    GAsyncQueue *jobs; // FlLiveJob; one of generation -1 ends the thread
+    GPtrArray *styles; // FlStyleEntry
+    gint wanted;       // generation; atomic
+    GMutex lock;       // of the settings
+    char **inputs, *path, *text;
+    bool anew; // the inputs are read again
+
+    /* Of the thread alone. */
+    FlFilm *film;
+    FlLiveJob *job;
+    char *facts; // that were told last
+    int set;     // generation of the film's settings
+    gint64 told; // last progress, microseconds
+};
+
+/* ---- the options of the command line ----------------------------------------------------------
+ */
+
+/* An option of the command line that is not in the config, which has all others. */
+static bool is_forwarded(const FlOption *option, const FlRenderOptions *options)
+{
+    static const char *const own[] = {"config", "overwrite", "no-clobber", NULL};
+    const char *cache = g_getenv("FLUIDY_CACHE");
+    if (strcmp(option->name, "cache") == 0)
+        return strcmp(options->cache, cache ? cache : "auto") != 0;
+    return option->scope == FL_SCOPE_RENDER && option->section == FL_SECTION_NONE &&
+           fl_option_is_set(option, options) && !g_strv_contains(own, option->name);
+}
+
+void fl_live_film_options(const FlArgs *args, GPtrArray *words)
+{
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *option = fl_option_at(i);
+        if (!is_forwarded(option, &args->render))
+            continue;
+        g_ptr_array_add(words, g_strdup_printf("--%s", option->name));
+        if (fl_option_takes_value(option))
+            g_ptr_array_add(words, fl_option_get(option, &args->render));
+    }
+    for (guint i = 0; i < args->limits->len; i++)
+        g_ptr_array_add(words, g_strdup_printf("--limit=%s", (char *)args->limits->pdata[i]));
+}
+
+static bool set_options(FlLiveFilm *film, GError **error)
+{
+    const FlRenderOptions *options = &film->args->render;
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *option = fl_option_at(i);
+        const bool cache = strcmp(option->name, "cache") == 0;
+        if (!cache && !is_forwarded(option, options))
+            continue;
+        g_autofree char *value = fl_option_get(option, options);
+        if (!fl_film_set(film->film, NULL, option->name,
+                         fl_option_takes_value(option) ? value : "on", error))
+            return false;
+    }
+    fl_film_set_draft_side(film->film, DRAFT_SIDE);
+    return true;
+}
+
+/* ---- calls of the film, in its thread ---------------------------------------------------------
+ */
+
+/* A line for the main thread. */
+typedef struct Line {
+    FlLiveFilm *film;
+    void (*take)(const char *text, void *data); // NULL: it is progress
+    char *text;
+    int done, total;
+} Line;
+
+static gboolean say(void *data)
+{
+    g_autofree Line *line = data;
+    const FlLiveCalls *calls = &line->film->calls;
+    if (line->take)
+        line->take(line->text, calls->data);
+    else
+        calls->progress(line->text, line->done, line->total, calls->data);
+    g_free(line->text);
+    return G_SOURCE_REMOVE;
+}
+
+static void send(FlLiveFilm *film, void (*take)(const char *, void *), const char *text, int done,
+                 int total)
+{
+    Line *line = g_new(Line, 1);
+    *line = (Line){film, take, g_strdup(text), done, total};
+    g_idle_add_full(G_PRIORITY_DEFAULT, say, line, NULL);
+}
+
+static bool was_stopped(void *data)
+{
+    FlLiveFilm *film = data;
+    return g_atomic_int_get(&film->wanted) != film->job->generation;
+}
+
+static bool on_progress(const FlProgress *progress, void *data)
+{
+    FlLiveFilm *film = data;
+    const gint64 now = g_get_monotonic_time();
+    const bool known = film->job->work == FL_LIVE_DRAFT && strcmp(progress->stage, "paint") != 0;
+    if (known && now - film->told > (gint64)TELL_MS * 1000) {
+        film->told = now;
+        send(film, NULL, progress->stage, progress->done, progress->total);
+    }
+    return !was_stopped(film);
+}
+
+static void on_warning(const char *message, void *data)
+{
+    FlLiveFilm *film = data;
+    send(film, film->calls.warning, message, 0, 0);
+}
+
+static void on_reads(const char *path, void *data)
+{
+    FlLiveFilm *film = data;
+    send(film, film->calls.reads, path, 0, 0);
+}
+
+/* ---- a job ------------------------------------------------------------------------------------
+ */
+
+/* Brings the film to the settings of the job. */
+static bool follow(FlLiveFilm *film, GError **error)
+{
+    const FlFilmCalls calls = {.size = sizeof calls,
+                               .progress = on_progress,
+                               .warning = on_warning,
+                               .stopped = was_stopped,
+                               .reads = on_reads,
+                               .data = film};
+    if (film->film && film->set == film->job->generation)
+        return true;
+    g_mutex_lock(&film->lock);
+    g_autofree char *path = g_strdup(film->path), *text = g_strdup(film->text);
+    if (film->anew)
+        g_clear_pointer(&film->film, fl_film_close);
+    film->anew = false;
+    const bool opens = !film->film;
+    if (opens)
+        film->film = fl_film_open((const char *const *)film->inputs);
+    g_mutex_unlock(&film->lock);
+    if (opens) {
+        g_clear_pointer(&film->facts, g_free);
+        fl_film_set_calls(film->film, &calls);
+    }
+    if ((opens && !set_options(film, error)) || !fl_film_set_config(film->film, path, text, error))
+        return false;
+    film->set = film->job->generation;
+    return true;
+}
+
+static void add_picture(FlLiveJob *job, FlLivePicture kind, int number, const FlFilmFrame *frame)
+{
+    const size_t bytes = 4 * (size_t)frame->width * (size_t)frame->height;
+    const int head[HEAD_NUMBERS] = {(int)kind, job->generation, number, frame->width,
+                                    frame->height};
+    GByteArray *picture = g_byte_array_sized_new((guint)(sizeof head + bytes));
+    for (int k = 0; k < HEAD_NUMBERS; k++) {
+        const guint32 value = GUINT32_TO_LE((guint32)head[k]);
+        g_byte_array_append(picture, (const guint8 *)&value, sizeof value);
+    }
+    g_byte_array_append(picture, frame->rgba, (guint)bytes);
+    g_ptr_array_add(job->pictures, g_byte_array_free_to_bytes(picture));
+}
+
+static void append_region(GString *json, const FlFilmRegion *region)
+{
+    g_autofree char *colour =
+        g_strdup_printf("#%02x%02x%02x", region->colour[0], region->colour[1], region->colour[2]);
+    g_autofree char *style = region->style ? g_path_get_basename(region->style) : NULL;
+    g_string_append(json, g_str_has_suffix(json->str, "[") ? "{" : ",{");
+    fl_json_text(json, "name", region->name);
+    fl_json_text(json, "label", region->layer);
+    fl_json_text(json, "paint", region->paint);
+    fl_json_text(json, "colour", colour);
+    fl_json_text(json, "style", style);
+    fl_json_number(json, "painter", region->style ? 0 : region->left_out ? -2 : -1, true);
+    g_string_append_c(json, '}');
+}
+
+static char *facts_of(FlLiveFilm *film, const FlFilmFrame *frame)
+{
+    int n = 0;
+    const int width = frame->width, height = frame->height;
+    const FlFilmRegion *region = fl_film_regions(film->film, &n, NULL);
+    const FlFilmInfo *info = region ? fl_film_draft_info(film->film, NULL) : NULL;
+    if (!info)
+        return NULL;
+    GString *json = g_string_new("{");
+    fl_json_text(json, "name", info->name);
+    fl_json_text(json, "version", fl_version());
+    fl_json_number(json, "width", width, true);
+    fl_json_number(json, "height", height, true);
+    fl_json_number(json, "fps", info->fps, true);
+    g_string_append_printf(json, ",\"transparent\":%s,\"numbers\":[",
+                           info->transparent ? "true" : "false");
+    for (int f = 0; f < info->n_frames; f++)
+        g_string_append_printf(json, f > 0 ? ",%d" : "%d", fl_film_number(film->film, f));
+    g_string_append(json, "],\"regions\":[");
+    for (int r = 0; r < n; r++)
+        append_region(json, &region[r]);
+    g_string_append(json, "]}");
+    return g_string_free(json, FALSE);
+}
+
+static bool make_draft(FlLiveFilm *film, GError **error)
+{
+    FlLiveJob *job = film->job;
+    const FlFilmInfo *info = fl_film_draft_info(film->film, error);
+    if (!info)
+        return false;
+    job->frame = MIN(job->frame, info->n_frames - 1);
+    const FlFilmFrame *frame = fl_film_draft(film->film, job->frame, error);
+    if (!frame)
+        return false;
+    add_picture(job, FL_LIVE_PAINT_DRAFT, job->frame, frame);
+    g_autofree char *facts = facts_of(film, frame);
+    if (g_strcmp0(facts, film->facts) != 0) {
+        g_free(film->facts);
+        film->facts = g_strdup(facts);
+        job->facts = g_steal_pointer(&facts);
+    }
+    const FlFilmFrame *drawing =
+        job->with_drawing ? fl_film_drawing(film->film, job->frame, error) : NULL;
+    if (drawing)
+        add_picture(job, FL_LIVE_DRAWING, job->frame, drawing);
+    const FlFilmFrame *map = drawing ? fl_film_map(film->film, job->frame, error) : NULL;
+    if (map)
+        add_picture(job, FL_LIVE_MAP, job->frame, map);
+    return map || !job->with_drawing;
+}
+
+/* The film of the draft has the style for the moment. */
+static bool make_sample(FlLiveFilm *film, GError **error)
+{
+    const FlLiveJob *job = film->job;
+    const FlStyleEntry *style = film->styles->pdata[job->style];
+    if (!fl_film_set(film->film, job->region, "style", style->name, error))
+        return false;
+    const FlFilmFrame *frame = fl_film_draft(film->film, job->frame, error);
+    if (frame)
+        add_picture(film->job, FL_LIVE_PAINT_SAMPLE, job->style, frame);
+    return fl_film_set(film->film, job->region, "style", NULL, frame ? error : NULL) && frame;
+}
+
+static bool do_job(FlLiveFilm *film, GError **error)
+{
+    FlLiveJob *job = film->job;
+    if (was_stopped(film)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "the settings have changed");
+        return false;
+    }
+    if (!follow(film, error))
+        return false;
+    if (job->work == FL_LIVE_DRAFT)
+        return make_draft(film, error);
+    if (job->work == FL_LIVE_SAMPLE)
+        return make_sample(film, error);
+    const FlFilmFrame *frame = fl_film_frame(film->film, job->frame, error);
+    if (frame)
+        add_picture(job, FL_LIVE_PAINT_FRAME, job->frame, frame);
+    return frame;
+}
+
+/* ---- the thread -------------------------------------------------------------------------------
+ */
+
+typedef struct Finished {
+    FlLiveFilm *film;
+    FlLiveJob *job;
+} Finished;
+
+static gboolean give_back(void *data)
+{
+    const Finished *finished = data;
+    finished->film->calls.done(finished->job, finished->film->calls.data);
+    return G_SOURCE_REMOVE;
+}
+
+static void *run(void *data)
+{
+    FlLiveFilm *film = data;
+    for (;;) {
+        FlLiveJob *job = film->job = g_async_queue_pop(film->jobs);
+        if (job->generation < 0) {
+            fl_live_job_free(job);
+            break;
+        }
+        const int read = film->film ? fl_film_stats(film->film)->n_read : 0;
+        const bool done = do_job(film, &job->error);
+        job->reread =
+            job->work == FL_LIVE_DRAFT && film->film && fl_film_stats(film->film)->n_read != read;
+        if (!done && !job->error)
+            g_set_error(&job->error, FL_ERROR, FL_ERROR_NO_MEMORY, "there is not enough memory");
+        Finished *finished = g_new(Finished, 1);
+        *finished = (Finished){film, job};
+        g_idle_add_full(G_PRIORITY_DEFAULT, give_back, finished, g_free);
+    }
+    g_clear_pointer(&film->film, fl_film_close);
+    return NULL;
+}
+
+FlLiveFilm *fl_live_film_new(const FlArgs *args, const FlLiveCalls *calls)
+{
+    FlLiveFilm *film = g_new0(FlLiveFilm, 1);
+    film->args = args;
+    film->calls = *calls;
+    film->styles = fl_style_list();
+    film->jobs = g_async_queue_new_full((GDestroyNotify)fl_live_job_free);
+    g_mutex_init(&film->lock);
+    film->thread = g_thread_new("film", run, film);
+    return film;
+}
+
+void fl_live_film_set(FlLiveFilm *film, int generation, const char *const *inputs, bool anew,
+                      const char *path, const char *text)
+{
+    g_mutex_lock(&film->lock);
+    g_strfreev(film->inputs);
+    g_free(film->path);
+    g_free(film->text);
+    film->inputs = g_strdupv((char **)inputs);
+    film->path = g_strdup(path);
+    film->text = g_strdup(text);
+    film->anew = film->anew || anew;
+    g_mutex_unlock(&film->lock);
+    g_atomic_int_set(&film->wanted, generation);
+}
+
+void fl_live_film_ask(FlLiveFilm *film, const FlLiveJob *job)
+{
+    FlLiveJob *asked = g_new(FlLiveJob, 1);
+    *asked = *job;
+    asked->region = g_strdup(job->region);
+    asked->pictures = g_ptr_array_new_with_free_func((GDestroyNotify)g_bytes_unref);
+    g_async_queue_push(film->jobs, asked);
+}
+
+void fl_live_job_free(FlLiveJob *job)
+{
+    g_free(job->region);
+    g_clear_error(&job->error);
+    g_free(job->facts);
+    g_clear_pointer(&job->pictures, g_ptr_array_unref);
+    g_free(job);
+}
+
+void fl_live_film_free(FlLiveFilm *film)
+{
+    if (!film)
+        return;
+    g_atomic_int_set(&film->wanted, -1);
+    fl_live_film_ask(film, &(FlLiveJob){.generation = -1});
+    g_thread_join(film->thread);
+    while (g_main_context_iteration(NULL, FALSE))
+        continue; // what the thread has said
+    g_async_queue_unref(film->jobs);
+    g_ptr_array_unref(film->styles);
+    g_strfreev(film->inputs);
+    g_free(film->path);
+    g_free(film->text);
+    g_free(film->facts);
+    g_mutex_clear(&film->lock);
+    g_free(film);
+}
