@@ -15,7 +15,7 @@
     "50 -100 0z'"
 
 /* folder: an empty one, which must stay. */
-static FlDrawing *open_film(const char *folder, const char *const *frames)
+static FlDrawing *open_film_by(FlRegionKey key, const char *folder, const char *const *frames)
 {
     for (int t = 0; frames[t]; t++) {
         g_autofree char *name = g_strdup_printf("%d.svg", t + 1);
@@ -28,11 +28,16 @@ static FlDrawing *open_film(const char *folder, const char *const *frames)
     }
     const char *const inputs[] = {folder, NULL};
     const FlDrawingOptions options = {
-        .inputs = inputs, .n_inputs = 1, .missing = FL_MISSING_ERROR, .key = FL_KEY_ID};
+        .inputs = inputs, .n_inputs = 1, .missing = FL_MISSING_ERROR, .key = key};
     GError *error = NULL;
     FlDrawing *drawing = fl_drawing_open(&options, NULL, &error);
     g_assert_no_error(error);
     return drawing;
+}
+
+static FlDrawing *open_film(const char *folder, const char *const *frames)
+{
+    return open_film_by(FL_KEY_ID, folder, frames);
 }
 
 /* The ln of the factor on the amount of each pixel of a frame, BARE where there is no paint. */
@@ -57,6 +62,7 @@ static Tones *lay_frame(const FlDrawing *drawing, int frame, const FlWashStyle *
                                       .style = &instance,
                                       .from = FL_FROM_ENGINE,
                                       .anchor = fl_drawing_anchor(drawing, r, frame)};
+        region[r].n_limbs = fl_drawing_limbs(drawing, r, frame, region[r].limb);
         painted[r] = &region[r], painted_of[r] = r;
     }
     const FlComposeInput input = {.drawing = drawing,
@@ -187,6 +193,42 @@ static void it_rides_with_its_figure(void)
         g_assert_cmpfloat(along, >, .95);
         g_assert_cmpfloat(along, >, page);
     }
+    for (int t = 0; t < FRAMES; t++)
+        g_free(frames[t]);
+}
+
+/* A leg of 200 by 90 px turns about its upper end at (200, 60), below a body of its fill. */
+static void a_limb_carries_its_own(void)
+{
+    enum { FRAMES = 8 };
+    char *frames[FRAMES + 1] = {NULL};
+    for (int t = 0; t < FRAMES; t++)
+        frames[t] =
+            g_strdup_printf("<g fill='#5bb7d8'><rect x='20' y='10' width='360' height='50'/>"
+                            "<rect x='-45' width='90' height='200' "
+                            "transform='translate(200 60) rotate(%d)'/></g>",
+                            5 * t);
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film_by(FL_KEY_FILL, folder, (const char *const *)frames);
+    FlLimb limb[FL_LIMBS];
+    g_assert_cmpint(fl_drawing_regions(drawing), ==, 1);
+    g_assert_cmpint(fl_drawing_limbs(drawing, 0, FRAMES - 1, limb), ==, 2);
+    const FlWashStyle lines = {.wash = 1, .passes = 1, .tide = 1};
+    g_autofree Tones *first = lay_frame(drawing, 0, &lines);
+    g_autofree Tones *last = lay_frame(drawing, FRAMES - 1, &lines);
+    const double angle = 5 * (FRAMES - 1) * G_PI / 180, c = cos(angle), s = sin(angle);
+    float a[90 * 110], b[90 * 110], same[90 * 110];
+    int n = 0;
+    for (int y = 70; y < 170; y++)
+        for (int x = -35; x < 35; x++, n++) {
+            const int u = (int)lrint(200 + c * x - s * y), v = (int)lrint(60 + s * x + c * y);
+            a[n] = first->tone[(60 + y) * W + 200 + x];
+            b[n] = last->tone[v * W + u];
+            same[n] = MAX(last->tone[(60 + y) * W + 200 + x], -1);
+        }
+    g_test_message("correlation %.3f along the limb, %.3f on the page", correlation(a, b, n),
+                   correlation(a, same, n));
+    g_assert_cmpfloat(correlation(a, b, n), >, .85); // the light does not turn
     for (int t = 0; t < FRAMES; t++)
         g_free(frames[t]);
 }
@@ -347,6 +389,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/wash/the-fill-stays-the-fill", the_fill_stays_the_fill);
     g_test_add_func("/wash/it-rides-with-its-figure", it_rides_with_its_figure);
+    g_test_add_func("/wash/a-limb-carries-its-own", a_limb_carries_its_own);
     g_test_add_func("/wash/what-stands-still-does-not-change", what_stands_still_does_not_change);
     g_test_add_func("/wash/touching-shapes-of-one-fill-are-one-wash",
                     touching_shapes_of_one_fill_are_one_wash);

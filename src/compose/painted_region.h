@@ -46,8 +46,10 @@ typedef struct FlPaintedRegion {
     const FlStyleInstance *style;     // with what
     int width, height;                // of the drawing as it is painted, px
     FlAnchor anchor;                  // of the region in the picture's frame
-    int exposure;                     // of its amounts; 0: as the paint itself asks for
-    FlRect rect;                      // the part of it in which the region ever is, with some room
+    int n_limbs;
+    FlLimb limb[FL_LIMBS]; // likewise
+    int exposure;          // of its amounts; 0: as the paint itself asks for
+    FlRect rect;           // the part of it in which the region ever is, with some room
     uint8_t *painted;   // of rect: 3 bytes of sRGB a pixel, the exemplar's colours; NULL: not open
     uint8_t *alpha;     // of rect, behind them in one piece; NULL: paint is on paper
     float reach_px;     // distance that alpha reaches beyond the shape; 0: no alpha

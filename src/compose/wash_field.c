@@ -19,9 +19,11 @@ enum {
     KEY_BLOOM,
 };
 
-#define STEP_PX 4   // px of the page between points
-#define NEAR 4      // points beyond a shape at which its wash is known
-#define JOINT_PX 12 // half the width over which the washes of parts that move apart are mixed
+#define STEP_PX 4        // px of the page between points
+#define NEAR 4           // points beyond a shape at which its wash is known
+#define APART_PX 30      // parts that have moved apart by as much have nothing in common
+#define LEAST_SHARE .05f // of a part in a wash
+#define JOINT_PX 12      // half the width over which the washes of parts that move apart are mixed
 
 static float clamp(float x, float low, float high)
 {
@@ -36,37 +38,53 @@ static float smooth(float x)
 
 /* ---- blur ------------------------------------------------------------------------------------ */
 
-/* Means of n values, `stride` apart, over 2 * radius + 1 of them; beyond the ends all are 0. */
-static void box_line(float *line, int n, size_t stride, int radius, float *room)
+/* Means over 2 * radius + 1 rows; beyond the plane all is 0. */
+static void box_rows(const float *plane, int width, int height, int radius, float *means)
 {
-    double sum = 0;
-    for (int i = 0; i < n; i++)
-        room[i] = line[(size_t)i * stride];
-    for (int i = 0; i < MIN(radius, n); i++)
-        sum += (double)room[i];
-    for (int i = 0; i < n; i++) {
-        sum += i + radius < n ? (double)room[i + radius] : 0;
-        sum -= i > radius ? (double)room[i - radius - 1] : 0;
-        line[(size_t)i * stride] = (float)(sum / (2 * radius + 1));
+    const size_t w = (size_t)width;
+    const float share = 1 / (float)(2 * radius + 1);
+    g_autofree float *sum = g_new0(float, w);
+    for (int y = 0; y < MIN(radius, height); y++)
+        for (size_t x = 0; x < w; x++)
+            sum[x] += plane[(size_t)y * w + x];
+    for (int y = 0; y < height; y++) {
+        const float *in = y + radius < height ? plane + (size_t)(y + radius) * w : NULL;
+        const float *out = y > radius ? plane + (size_t)(y - radius - 1) * w : NULL;
+        for (size_t x = 0; in && x < w; x++)
+            sum[x] += in[x];
+        for (size_t x = 0; out && x < w; x++)
+            sum[x] -= out[x];
+        for (size_t x = 0; x < w; x++)
+            means[(size_t)y * w + x] = sum[x] * share;
     }
 }
 
-/* Nearly a Gaussian: three boxes. */
-static void blur_line(float *line, int n, size_t stride, float sigma, float *room)
+/* Two boxes, nearly as a Gaussian of sigma rows; room: as large as the plane. */
+static void blur_rows(float *plane, int width, int height, float sigma, float *room)
 {
-    const int radius = (int)(.5f * (sqrtf(4 * sigma * sigma + 1) - 1) + .5f);
-    for (int k = 0; k < 3 && radius > 0; k++)
-        box_line(line, n, stride, radius, room);
+    const int radius = (int)(.5f * (sqrtf(6 * sigma * sigma + 1) - 1) + .5f);
+    box_rows(plane, width, height, radius, room);
+    box_rows(room, width, height, radius, plane);
+}
+
+static void transpose(const float *plane, int width, int height, float *turned)
+{
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            turned[x * height + y] = plane[y * width + x];
 }
 
 /* ---- the shapes of a wash -------------------------------------------------------------------- */
 
-/* Shapes that move as one: those of a region. */
+/* A region, and what moves as one in it: all of it, or a limb. */
 typedef struct Part {
     int region;
     FlAnchor anchor;
-    float *weight; // at each point, how much of the wash is this part's
+    const FlLimb *limb; // NULL: all of it
+    float *weight;      // at each point, how much of the wash is this part's
 } Part;
+
+#define ROOMS 5
 
 /* A wash in the making. Lengths are px of the page, unless said. */
 typedef struct Field {
@@ -80,7 +98,9 @@ typedef struct Field {
     float *planes; // of what follows and of the parts' weights
     float *mask;   // coverage at each point, as if no other shape lay over it
     float *side;   // -1 light side .. 1 shadow side
-    float *room[4];
+    float *around; // coverage of what is around each point, by the size of the shapes
+    float *room[ROOMS];
+    float *turned; // and as much again: of blur()
 } Field;
 
 static size_t points_of(const FlWash *wash)
@@ -102,15 +122,18 @@ static bool field_alloc(Field *field, GError **error)
     float *own = fl_alloc(n * FL_WASH_PLANES, sizeof *own, "a wash", error);
     for (int k = 0; k < FL_WASH_PLANES; k++)
         wash->plane[k] = own ? own + (size_t)k * n : NULL;
+    const size_t own_planes = 5 + ROOMS;
     float *planes =
-        own ? fl_alloc(n * (size_t)(6 + field->n_parts), sizeof *planes, "a wash", error) : NULL;
+        own ? fl_alloc(n * (own_planes + (size_t)field->n_parts), sizeof *planes, "a wash", error)
+            : NULL;
     if (!(field->planes = planes))
         return false;
-    field->mask = planes, field->side = planes + n;
-    for (size_t k = 0; k < 4; k++)
-        field->room[k] = planes + (2 + k) * n;
+    field->mask = planes, field->side = planes + n, field->around = planes + 2 * n;
+    field->turned = planes + 3 * n;
+    for (size_t k = 0; k < ROOMS; k++)
+        field->room[k] = planes + (5 + k) * n;
     for (int k = 0; k < field->n_parts; k++)
-        field->part[k].weight = planes + (6 + (size_t)k) * n;
+        field->part[k].weight = planes + (own_planes + (size_t)k) * n;
     return true;
 }
 
@@ -118,24 +141,23 @@ static void blur(const Field *field, float *plane, float sigma_px)
 {
     const int width = field->wash->width, height = field->wash->height;
     const float sigma = sigma_px * field->input->paper_px / (float)field->wash->step;
-    float *room = g_newa(float, (size_t)MAX(width, height));
-    for (int y = 0; y < height; y++)
-        blur_line(plane + (size_t)y * (size_t)width, width, 1, sigma, room);
-    for (int x = 0; x < width; x++)
-        blur_line(plane + x, height, (size_t)width, sigma, room);
+    float *turned = field->turned, *room = field->turned + points_of(field->wash);
+    blur_rows(plane, width, height, sigma, room);
+    transpose(plane, width, height, turned);
+    blur_rows(turned, height, width, sigma, room);
+    transpose(turned, height, width, plane);
 }
 
-/* The mean of a plane within the shapes around each point: nothing leaks in over the contour. */
-static void blur_inside(const Field *field, float *plane, float sigma_px, float *mask)
+/* The mean of a plane within the shapes around each point: nothing leaks in over the contour.
+ * around: the mask, as blurred. */
+static void blur_inside(const Field *field, float *plane, float sigma_px, const float *around)
 {
     const size_t n = points_of(field->wash);
     for (size_t i = 0; i < n; i++)
         plane[i] *= field->mask[i];
-    memcpy(mask, field->mask, n * sizeof *mask);
-    blur(field, mask, sigma_px);
     blur(field, plane, sigma_px);
     for (size_t i = 0; i < n; i++)
-        plane[i] /= MAX(mask[i], 1e-4f);
+        plane[i] /= MAX(around[i], 1e-3f);
 }
 
 /* Adds the coverage of a draw in the square of a step around each point to a plane, 0..1. */
@@ -161,16 +183,7 @@ static void add_coverage(const Field *field, const FlDraw *draw, float *plane)
     }
 }
 
-static Part *part_of_region(const Field *field, int region)
-{
-    int k = 0;
-    while (field->part[k].region != region)
-        k++;
-    return &field->part[k];
-}
-
-/* The masks of the draws of wash w, and of its parts as far as the other parts leave them in
- * sight. */
+/* The masks of the draws of wash w, and of its regions as far as the others leave them in sight. */
 static void fill_masks(const Field *field, const FlWashes *washes, int w, const FlDrawList *draws)
 {
     const size_t n = points_of(field->wash);
@@ -178,16 +191,38 @@ static void fill_masks(const Field *field, const FlWashes *washes, int w, const 
     for (int r = draws->n - 1; r >= 0; r--) {
         if (washes->of_draw[r] != w)
             continue;
-        float *weight = part_of_region(field, draws->draw[r].region)->weight;
         memset(own, 0, n * sizeof *own);
         add_coverage(field, &draws->draw[r], own);
         for (size_t i = 0; i < n; i++) {
-            const float seen = MIN(own[i], 1 - field->mask[i]);
-            weight[i] += seen, field->mask[i] += seen;
+            own[i] = MIN(own[i], 1 - field->mask[i]);
+            field->mask[i] += own[i];
         }
+        for (int k = 0; k < field->n_parts; k++)
+            for (size_t i = 0; field->part[k].region == draws->draw[r].region && i < n; i++)
+                field->part[k].weight[i] += own[i];
     }
     for (int k = 0; field->n_parts > 1 && k < field->n_parts; k++)
         blur(field, field->part[k].weight, JOINT_PX);
+}
+
+/* The parts of a region that a point of it belongs to: limbs by how far it is from each, by the
+ * limb's own spread. */
+static void divide_into_limbs(const Field *field)
+{
+    const FlWash *wash = field->wash;
+    const float room = JOINT_PX * field->input->paper_px * JOINT_PX * field->input->paper_px / 4;
+    for (int k = 0; k < field->n_parts; k++) {
+        const FlLimb *limb = field->part[k].limb;
+        for (int y = 0; limb && y < wash->height; y++)
+            for (int x = 0; x < wash->width; x++) {
+                const float dx = (float)(wash->box.x + x * wash->step) - limb->x;
+                const float dy = (float)(wash->box.y + y * wash->step) - limb->y;
+                const float xx = limb->spread[0] + room, yy = limb->spread[1] + room;
+                const float xy = limb->spread[2], area = xx * yy - xy * xy;
+                const float far = .25f * (yy * dx * dx - 2 * xy * dx * dy + xx * dy * dy) / area;
+                field->part[k].weight[y * wash->width + x] /= 1e-3f + far * far * far * far * far;
+            }
+    }
 }
 
 /* ---- light and shadow, pools ----------------------------------------------------------------- */
@@ -206,8 +241,10 @@ static void find_side(const Field *field)
                          field->light[1] * (float)(y - wash->height / 2));
         mean[i] = along[i], square[i] = along[i] * along[i];
     }
-    blur_inside(field, mean, field->size, field->room[2]);
-    blur_inside(field, square, field->size, field->room[2]);
+    memcpy(field->around, field->mask, n * sizeof *mean);
+    blur(field, field->around, field->size);
+    blur_inside(field, mean, field->size, field->around);
+    blur_inside(field, square, field->size, field->around);
     for (size_t i = 0; i < n; i++) {
         const float spread = sqrtf(MAX(square[i] - mean[i] * mean[i], 0));
         along[i] = clamp((along[i] - mean[i]) / (1.9f * spread + 2), -1.4f, 1.4f);
@@ -223,7 +260,7 @@ static void find_on_page(const Field *field, int first, int n, int page_px, floa
     g_autofree float *room = g_new(float, all);
     for (int i = 0; i < all; i++)
         line[i] = 1;
-    blur_line(line, all, 1, sigma_px * field->input->paper_px / (float)step, room);
+    blur_rows(line, 1, all, sigma_px * field->input->paper_px / (float)step, room);
     for (int i = 0; i < n; i++)
         share[i] = line[MIN(first / step + i, all - 1)];
 }
@@ -262,6 +299,7 @@ static void find_breadth(const Field *field, float *breadth)
     const size_t n = points_of(field->wash);
     memcpy(breadth, field->mask, n * sizeof *breadth);
     blur(field, breadth, 16);
+    memcpy(field->room[0], breadth, n * sizeof *breadth);
     blur_inside(field, breadth, 16, field->room[0]);
     for (size_t i = 0; i < n; i++)
         breadth[i] = smooth((breadth[i] - .2f) / .35f);
@@ -384,53 +422,80 @@ static bool is_mixed(int plane)
 }
 
 /* Adds the values of a part to those of the parts before it: slow ones are mixed by weight; lines
- * are those of the part with the most weight, and are lost where others have nearly as much. */
-static void add_values(const Field *field, int part, size_t at, int n, Values values)
+ * are those of the part with the most weight, and are lost where others that have moved apart from
+ * it have nearly as much. */
+static void add_values(const Field *field, const float *weight, size_t at, const Places *places,
+                       Values values)
 {
     const FlWash *wash = field->wash;
-    for (int i = 0; i < n; i++) {
-        float before = 0, most = 0;
-        for (int k = 0; k < part; k++) {
-            before += field->part[k].weight[at + (size_t)i];
-            most = MAX(most, field->part[k].weight[at + (size_t)i]);
-        }
-        const float own = field->part[part].weight[at + (size_t)i];
-        const float share = before + own > 1e-4f ? own / (before + own) : part == 0;
+    float *all = field->room[1], *most = field->room[2]; // sum and greatest of the weights so far
+    float *lead_x = field->room[3], *lead_y = field->room[4]; // places of the latter's part
+    for (int i = 0; i < places->n; i++) {
+        const size_t p = at + (size_t)i;
+        const float x = places->x[i], y = places->y[i];
+        const bool first = all[p] <= 0, leads = first || weight[p] > most[p];
+        const float apart = first ? 0 : fabsf(x - lead_x[p]) + fabsf(y - lead_y[p]);
+        const float along = clamp(1 - apart / APART_PX, 0, 1); // what moves along is one with it
+        all[p] += weight[p] + 1e-6f;
+        most[p] = MAX(most[p], weight[p]) + along * MIN(most[p], weight[p]);
+        if (leads)
+            lead_x[p] = x, lead_y[p] = y;
+        const float share = first ? 1 : weight[p] / all[p];
         for (int k = 0; k < FL_WASH_PLANES; k++) {
-            float *to = &wash->plane[k][at + (size_t)i];
+            float *to = &wash->plane[k][p];
             if (is_mixed(k))
                 *to += share * (values[k][i] - *to);
-            else if (own > most || part == 0)
+            else if (leads)
                 *to = values[k][i];
         }
-        const float sure = MAX(own, most) / MAX(before + own, 1e-4f);
-        wash->plane[FL_WASH_LINES][at + (size_t)i] = smooth((2 * sure - 1.2f) / .8f);
+        wash->plane[FL_WASH_LINES][p] = smooth((2 * most[p] / all[p] - 1.2f) / .8f);
+    }
+}
+
+/* Makes weights shares of one, without those that are next to nothing. */
+static void share_weights(const Field *field)
+{
+    for (size_t i = 0; i < points_of(field->wash); i++) {
+        float all = 1e-6f;
+        for (int k = 0; k < field->n_parts; k++)
+            all += field->part[k].weight[i];
+        for (int k = 0; k < field->n_parts; k++)
+            field->part[k].weight[i] = MAX(field->part[k].weight[i] / all - LEAST_SHARE, 0);
     }
 }
 
 static void fill_noise(const Field *field)
 {
     const FlWash *wash = field->wash;
-    float *near = field->room[0];
+    float *near = field->room[0], *all = field->room[1], *most = field->room[2];
+    memset(all, 0, points_of(wash) * sizeof *all);
+    memset(most, 0, points_of(wash) * sizeof *most);
     memcpy(near, field->mask, points_of(wash) * sizeof *near);
     blur(field, near, NEAR * (float)wash->step / (3 * field->input->paper_px));
-    for (int y = 0; y < wash->height; y++)
-        for (int x = 0; x < wash->width; x += FL_NOISE_ROW) {
-            const size_t row = (size_t)y * (size_t)wash->width;
-            int first = x, last = MIN(x + FL_NOISE_ROW, wash->width);
-            while (first < last && near[row + (size_t)first] <= 0)
-                first++;
-            while (first < last && near[row + (size_t)last - 1] <= 0)
-                last--;
-            for (int k = 0; first < last && k < field->n_parts; k++) {
+    for (size_t i = 0; i < points_of(wash); i++)
+        near[i] = near[i] > 1e-4f ? near[i] : 0;
+    if (field->n_parts > 1)
+        share_weights(field);
+    for (int k = 0; k < field->n_parts; k++)
+        for (int y = 0; y < wash->height; y++)
+            for (int x = 0; x < wash->width; x += FL_NOISE_ROW) {
+                const size_t row = (size_t)y * (size_t)wash->width;
+                const float *weight = field->n_parts > 1 ? field->part[k].weight + row : near + row;
+                int first = x, last = MIN(x + FL_NOISE_ROW, wash->width);
+                while (first < last && (near[row + (size_t)first] <= 0 || weight[first] <= 0))
+                    first++;
+                while (first < last && (near[row + (size_t)last - 1] <= 0 || weight[last - 1] <= 0))
+                    last--;
+                if (first == last)
+                    continue;
                 Places at;
                 Values values;
                 find_places(wash, &field->part[k], field->input->paper_px, first, y, last - first,
                             &at);
                 find_values(field, &at, values);
-                add_values(field, k, row + (size_t)first, at.n, values);
+                add_values(field, field->n_parts > 1 ? field->part[k].weight : near,
+                           row + (size_t)first, &at, values);
             }
-        }
 }
 
 /* ---- a wash ---------------------------------------------------------------------------------- */
@@ -440,7 +505,7 @@ static void centre(const Field *field, float *plane)
 {
     float *mean = field->room[0];
     memcpy(mean, plane, points_of(field->wash) * sizeof *mean);
-    blur_inside(field, mean, field->size, field->room[1]);
+    blur_inside(field, mean, field->size, field->around);
     for (size_t i = 0; i < points_of(field->wash); i++)
         plane[i] -= mean[i];
 }
@@ -503,15 +568,19 @@ static void find_box(FlWash *wash, const FlComposeInput *input, FlRect around)
     wash->height = (wash->box.height + step - 1) / step + 1;
 }
 
-static void add_part(Field *field, int region)
+static void add_region(Field *field, int region)
 {
-    const FlComposeInput *input = field->input;
-    const FlPaintedRegion *painted = input->painted[input->painted_of[region]];
+    const FlPaintedRegion *painted = field->input->painted[field->input->painted_of[region]];
+    const int n = MAX(painted->n_limbs, 1);
     for (int k = 0; k < field->n_parts; k++)
         if (field->part[k].region == region)
             return;
-    field->part = g_renew(Part, field->part, field->n_parts + 1);
-    field->part[field->n_parts++] = (Part){region, painted->anchor, NULL};
+    field->part = g_renew(Part, field->part, field->n_parts + n);
+    for (int k = 0; k < n; k++) {
+        const FlLimb *limb = painted->n_limbs > 0 ? &painted->limb[k] : NULL;
+        field->part[field->n_parts++] =
+            (Part){region, limb ? limb->anchor : painted->anchor, limb, NULL};
+    }
 }
 
 static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input,
@@ -525,7 +594,7 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
         if (!field.painted)
             field.painted = input->painted[input->painted_of[draws->draw[r].region]];
         around = fl_rect_or(around, draws->draw[r].area.box);
-        add_part(&field, draws->draw[r].region);
+        add_region(&field, draws->draw[r].region);
     }
     find_box(field.wash, input, around);
     field.size = size_of(input, field.painted->region);
@@ -535,6 +604,7 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
     const bool made = field_alloc(&field, error);
     if (made) {
         fill_masks(&field, washes, w, draws);
+        divide_into_limbs(&field);
         find_side(&field);
         fill_noise(&field);
         put_together(&field);

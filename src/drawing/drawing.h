@@ -61,6 +61,16 @@ typedef struct FlAnchor {
     float side;           // of a square as large as the region's shapes, px; the same in all frames
 } FlAnchor;
 
+#define FL_LIMBS 12 // of a region, at most
+
+/** A part of a region that moves by itself, such as a leg: an anchor of its own, and where it is.
+ */
+typedef struct FlLimb {
+    FlAnchor anchor;
+    float x, y;      // its middle, px of the picture
+    float spread[3]; // of its shape about that: as in FlPose
+} FlLimb;
+
 /** A sequence and its regions. What it keeps of pictures does not grow with the film. */
 typedef struct FlDrawing FlDrawing;
 
@@ -107,6 +117,10 @@ bool fl_drawing_stands_still(const FlDrawing *drawing);
 
 /** A region's anchor in a frame; it depends on no other region. */
 FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame);
+
+/** The limbs of a region that are seen in a frame, FL_LIMBS at most; none if its shapes move as one
+ * through the film. Returns: their number. */
+int fl_drawing_limbs(const FlDrawing *drawing, int region, int frame, FlLimb *limbs);
 
 /**
  * Halves width and height of the pictures from now on, rounding up; the regions stay the same. No

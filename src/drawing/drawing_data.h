@@ -5,6 +5,12 @@
 #include "drawing/drawing.h"
 #include "worker/workers.h"
 
+/** A limb and its region. */
+typedef struct FlRegionLimb {
+    int region;
+    FlLimb limb;
+} FlRegionLimb;
+
 typedef struct FlDrawingFrame {
     int n;
     FlDrawStep *step; // bottom up
@@ -12,6 +18,7 @@ typedef struct FlDrawingFrame {
     FlCanvas canvas;  // as in FlSvgOptions
     char **whole;     // likewise
     FlAnchor *anchor; // of each region
+    GArray *limbs;    // FlRegionLimb
     int origin;       // its index when the drawing was opened
 } FlDrawingFrame;
 

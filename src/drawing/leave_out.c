@@ -41,6 +41,7 @@ static FlDrawingFrame copy_of(const FlDrawing *drawing, const FlDrawingFrame *fr
     FlDrawingFrame copy = *frame;
     copy.step = g_memdup2(frame->step, ((size_t)frame->n + 1) * sizeof *frame->step);
     copy.whole = g_strdupv(frame->whole);
+    copy.limbs = g_array_copy(frame->limbs);
     copy.anchor = g_memdup2(frame->anchor, (drawing->regions->len + 1) * sizeof *frame->anchor);
     return copy;
 }

@@ -23,6 +23,12 @@ int fl_drawing_height(const FlDrawing *drawing)
 }
 
 /* The files are drawn to the page's size, and steps within their boxes. */
+static void halve_anchor(FlAnchor *anchor)
+{
+    anchor->x /= 2, anchor->y /= 2, anchor->side /= 2;
+    anchor->rest_x /= 2, anchor->rest_y /= 2;
+}
+
 void fl_drawing_halve(FlDrawing *drawing)
 {
     fl_drawing_forget(drawing);
@@ -35,10 +41,14 @@ void fl_drawing_halve(FlDrawing *drawing)
             for (int side = 0; side < 4; side++)
                 frame->step[i].box[side] /= 2;
         }
-        for (guint r = 0; r < drawing->regions->len; r++) {
-            FlAnchor *anchor = &frame->anchor[r];
-            anchor->x /= 2, anchor->y /= 2, anchor->side /= 2;
-            anchor->rest_x /= 2, anchor->rest_y /= 2;
+        for (guint r = 0; r < drawing->regions->len; r++)
+            halve_anchor(&frame->anchor[r]);
+        for (guint k = 0; k < frame->limbs->len; k++) {
+            FlLimb *limb = &g_array_index(frame->limbs, FlRegionLimb, k).limb;
+            halve_anchor(&limb->anchor);
+            limb->x /= 2, limb->y /= 2;
+            for (int i = 0; i < 3; i++)
+                limb->spread[i] /= 4;
         }
     }
 }
@@ -56,6 +66,16 @@ const FlRegion *fl_drawing_region(const FlDrawing *drawing, int region)
 FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame)
 {
     return drawing->frame[frame].anchor[region];
+}
+
+int fl_drawing_limbs(const FlDrawing *drawing, int region, int frame, FlLimb *limbs)
+{
+    const GArray *all = drawing->frame[frame].limbs;
+    int n = 0;
+    for (guint k = 0; k < all->len && n < FL_LIMBS; k++)
+        if (g_array_index(all, FlRegionLimb, k).region == region)
+            limbs[n++] = g_array_index(all, FlRegionLimb, k).limb;
+    return n;
 }
 
 GHashTable *fl_drawing_linked_files(const FlDrawing *drawing)
@@ -289,7 +309,9 @@ static void merge_regions(FlSurvey *survey, GArray *groups, const FlRegionRule *
 
 static void remember(FlDrawing *drawing, FlSurvey *survey)
 {
-    g_autofree FlAnchor **anchors = fl_region_anchors_find(survey, (int)drawing->regions->len);
+    g_autofree GArray **limbs = NULL;
+    g_autofree FlAnchor **anchors =
+        fl_region_anchors_find(survey, (int)drawing->regions->len, &limbs);
     drawing->frame = g_new0(FlDrawingFrame, survey->n_frames);
     for (int t = 0; t < survey->n_frames; t++) {
         const GArray *parts = survey->frame[t].parts;
@@ -298,6 +320,7 @@ static void remember(FlDrawing *drawing, FlSurvey *survey)
         frame->canvas = survey->frame[t].canvas;
         frame->origin = t;
         frame->anchor = anchors[t];
+        frame->limbs = limbs[t];
         for (guint r = 0; r < drawing->regions->len; r++) {
             const FlRegion *region = fl_drawing_region(drawing, (int)r);
             frame->anchor[r].side = (float)sqrt(region->area_px / MAX(region->n_leaves, 1));
@@ -428,6 +451,7 @@ void fl_drawing_frame_clear(FlDrawingFrame *frame)
 {
     g_free(frame->step);
     g_free(frame->anchor);
+    g_clear_pointer(&frame->limbs, g_array_unref);
     g_strfreev(frame->whole);
     *frame = (FlDrawingFrame){0};
 }

@@ -10,6 +10,10 @@
 #define MOST_TURN 0.6
 #define NO_TURN 1e-9 // a turn that is this share of what it could be is rounding
 
+#define LIMB 0.03      // of a region's area, at least
+#define LIMB_PX 0.024  // side of a square as large as a limb, share of the page's longer side
+#define STRAY_PX 0.004 // that a limb moves apart from its region, share of that side
+
 #define STEADY 4 // in all but one of so many steps a leaf that keeps its nodes has as many
 
 /* A leaf of a region. */
@@ -18,6 +22,9 @@ typedef struct Leaf {
     int frame;                // of that
     int steps, same;          // times it is seen again; of these with as many nodes
     bool shared; // two leaves have its number, since regions were merged: the number is ambiguous
+    double area; // sum over the frames
+    bool limb;
+    FlAnchor anchor; // of a limb
 } Leaf;
 
 /* Places of leaves before and after a step, weighted by area. */
@@ -43,6 +50,7 @@ typedef struct Follower {
     Fit *fit;     // of each region
     Means *begin; // of each region, in the first frame that has it
     bool *begun;  // true after that frame
+    bool *limbs;  // true if some of its limbs move apart from it
 } Follower;
 
 /* The conjugate of a, times b. */
@@ -197,8 +205,16 @@ static bool keeps_nodes(const Leaf *leaf)
 static void note_leaf(Follower *f, int t, const FlSurveyPart *part)
 {
     Leaf *leaf = leaf_of(f, part);
-    if (!leaf->shared && leaf->part && leaf->frame == t - 1)
+    const bool known = !leaf->shared && leaf->part && leaf->frame == t - 1;
+    if (known)
         add_leaf(&f->fit[part->region], leaf->part, part, keeps_nodes(leaf), f->page);
+    if (known && leaf->limb) {
+        Fit own = {{0}};
+        add_leaf(&own, leaf->part, part, keeps_nodes(leaf), f->page);
+        move(&leaf->anchor, &own);
+    } else {
+        leaf->anchor.cosine = leaf->anchor.sine = 0; // it begins
+    }
     leaf->part = part, leaf->frame = t;
 }
 
@@ -209,7 +225,25 @@ static void count_leaf(Follower *f, int t, const FlSurveyPart *part)
     leaf->shared |= leaf->part && leaf->frame == t;
     leaf->steps += leaf->part != NULL;
     leaf->same += leaf->part && leaf->part->pose.n == part->pose.n;
+    leaf->area += (double)part->area_px;
     leaf->part = part, leaf->frame = t;
+}
+
+/* The largest leaves of a region are its limbs: tiny ones have no wash to carry. */
+static void choose_limbs(Leaf *leaf, int n, double least)
+{
+    double all = 0;
+    for (int k = 0; k < n; k++)
+        all += leaf[k].area;
+    for (int i = 0; n > 1 && i < FL_LIMBS; i++) {
+        Leaf *largest = NULL;
+        for (int k = 0; k < n; k++)
+            if (!leaf[k].limb && !leaf[k].shared && (!largest || leaf[k].area > largest->area))
+                largest = &leaf[k];
+        if (!largest || largest->area < LIMB * all || largest->area < least * (largest->steps + 1))
+            return;
+        largest->limb = true;
+    }
 }
 
 static void count_leaves(Follower *f, const FlSurvey *survey, int n_leaves)
@@ -222,6 +256,11 @@ static void count_leaves(Follower *f, const FlSurvey *survey, int n_leaves)
         }
     for (int k = 0; k < n_leaves; k++)
         f->leaf[k].part = NULL;
+    const double side = LIMB_PX * (double)MAX(f->page[0], f->page[1]);
+    for (int r = 0; r < f->n_regions; r++) {
+        const int end = r + 1 < f->n_regions ? f->first[r + 1] : n_leaves;
+        choose_limbs(f->leaf + f->first[r], end - f->first[r], side * side);
+    }
 }
 
 static void add_beginning(Follower *f, const FlSurveyPart *part)
@@ -242,7 +281,51 @@ static void begin(Follower *f, int region, FlAnchor *anchor)
     f->begun[region] = true;
 }
 
-static void follow(Follower *f, int t, const GArray *parts, FlAnchor *anchor)
+/* Where a point was when its anchor was. */
+static FlPoint at_rest(const FlAnchor *anchor, FlPoint p)
+{
+    const FlPoint turn = {(double)anchor->cosine, (double)anchor->sine};
+    const FlPoint arm = {p.x - (double)anchor->x, p.y - (double)anchor->y};
+    const FlPoint back = conjugate_times(turn, arm);
+    return (FlPoint){(double)anchor->rest_x + back.x, (double)anchor->rest_y + back.y};
+}
+
+/* A limb begins where its region has it. */
+static void begin_limb(FlAnchor *limb, const FlAnchor *region, FlPoint middle)
+{
+    const FlPoint rest = at_rest(region, middle);
+    *limb = (FlAnchor){within(middle.x), within(middle.y), region->cosine, region->sine,
+                       within(rest.x),   within(rest.y),   region->side};
+}
+
+/* Returns: true if a limb is elsewhere than its region has it. */
+static bool strays(const FlAnchor *limb, const FlAnchor *region, const FlSurveyPart *part,
+                   double least)
+{
+    const FlPoint rest = at_rest(region, (FlPoint){(double)limb->x, (double)limb->y});
+    const double turned =
+        fabs((double)(limb->cosine * region->sine - limb->sine * region->cosine)) *
+        sqrt((double)(part->pose.spread[0] + part->pose.spread[1]));
+    return turned + hypot(rest.x - (double)limb->rest_x, rest.y - (double)limb->rest_y) > least;
+}
+
+static void add_limb(Follower *f, const FlSurveyPart *part, const FlAnchor *anchor, GArray *limbs)
+{
+    Leaf *leaf = leaf_of(f, part);
+    const FlAnchor *region = &anchor[part->region];
+    const FlPoint middle = middle_of(part, part->pose.n > 0);
+    if (!leaf->limb)
+        return;
+    if (leaf->anchor.cosine == 0 && leaf->anchor.sine == 0)
+        begin_limb(&leaf->anchor, region, middle);
+    const double least = STRAY_PX * (double)MAX(f->page[0], f->page[1]);
+    f->limbs[part->region] |= strays(&leaf->anchor, region, part, least);
+    FlRegionLimb limb = {part->region, {leaf->anchor, (float)middle.x, (float)middle.y, {0}}};
+    memcpy(limb.limb.spread, part->pose.spread, sizeof limb.limb.spread);
+    g_array_append_val(limbs, limb);
+}
+
+static void follow(Follower *f, int t, const GArray *parts, FlAnchor *anchor, GArray *limbs)
 {
     memset(f->fit, 0, (size_t)f->n_regions * sizeof *f->fit);
     for (guint i = 0; i < parts->len; i++) {
@@ -256,6 +339,9 @@ static void follow(Follower *f, int t, const GArray *parts, FlAnchor *anchor)
         begin(f, r, &anchor[r]);
         move(&anchor[r], &f->fit[r]);
     }
+    for (guint i = 0; i < parts->len; i++)
+        if (g_array_index(parts, FlSurveyPart, i).region >= 0)
+            add_limb(f, &g_array_index(parts, FlSurveyPart, i), anchor, limbs);
 }
 
 /* Numbers the leaves of all regions. Returns: how many there are. */
@@ -276,7 +362,19 @@ static int number_leaves(const FlSurvey *survey, int n_regions, int *first)
     return all;
 }
 
-FlAnchor **fl_region_anchors_find(const FlSurvey *survey, int n_regions)
+/* Regions that move as one have none. */
+static void drop_limbs(const Follower *f, GArray *limbs)
+{
+    guint kept = 0;
+    for (guint k = 0; k < limbs->len; k++) {
+        const FlRegionLimb limb = g_array_index(limbs, FlRegionLimb, k);
+        if (f->limbs[limb.region])
+            g_array_index(limbs, FlRegionLimb, kept++) = limb;
+    }
+    g_array_set_size(limbs, kept);
+}
+
+FlAnchor **fl_region_anchors_find(const FlSurvey *survey, int n_regions, GArray ***limbs)
 {
     g_autofree int *first = g_new0(int, n_regions + 1);
     const int n_leaves = number_leaves(survey, n_regions, first);
@@ -284,15 +382,21 @@ FlAnchor **fl_region_anchors_find(const FlSurvey *survey, int n_regions)
     g_autofree Fit *fit = g_new0(Fit, n_regions + 1);
     g_autofree Means *begin = g_new0(Means, n_regions + 1);
     g_autofree bool *begun = g_new0(bool, n_regions + 1);
-    Follower f = {n_regions, {(float)survey->width, (float)survey->height}, first, leaf, fit, begin,
-                  begun};
+    g_autofree bool *strayed = g_new0(bool, n_regions + 1);
+    Follower f = {
+        n_regions, {(float)survey->width, (float)survey->height}, first, leaf, fit, begin, begun,
+        strayed};
     count_leaves(&f, survey, n_leaves);
     FlAnchor **anchors = g_new0(FlAnchor *, survey->n_frames + 1);
+    *limbs = g_new0(GArray *, survey->n_frames + 1);
     for (int t = 0; t < survey->n_frames; t++) {
         anchors[t] = g_new0(FlAnchor, n_regions + 1);
         if (t > 0)
             memcpy(anchors[t], anchors[t - 1], (size_t)n_regions * sizeof **anchors);
-        follow(&f, t, survey->frame[t].parts, anchors[t]);
+        (*limbs)[t] = g_array_new(FALSE, TRUE, sizeof(FlRegionLimb));
+        follow(&f, t, survey->frame[t].parts, anchors[t], (*limbs)[t]);
     }
+    for (int t = 0; t < survey->n_frames; t++)
+        drop_limbs(&f, (*limbs)[t]);
     return anchors;
 }

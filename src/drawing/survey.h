@@ -2,7 +2,7 @@
 #ifndef FLUIDY_DRAWING_SURVEY_H
 #define FLUIDY_DRAWING_SURVEY_H
 
-#include "drawing/drawing.h"
+#include "drawing/drawing_data.h"
 #include "worker/workers.h"
 
 typedef struct FlSurvey {
@@ -42,9 +42,12 @@ void fl_survey_clear(FlSurvey *survey);
  * an anchor makes the rigid motion that is nearest to that of the nodes of all leaves that are in
  * both. A shape that enters the page or is hidden has it all the same.
  *
- * Returns: of each frame those of all regions; to be freed, as its rows.
+ * A region some of whose leaves move apart from the others has limbs: its largest leaves.
+ *
+ * Returns: of each frame those of all regions; to be freed, as its rows. limbs: of each frame, a
+ * new array of FlRegionLimb; to be freed likewise.
  */
-FlAnchor **fl_region_anchors_find(const FlSurvey *survey, int n_regions);
+FlAnchor **fl_region_anchors_find(const FlSurvey *survey, int n_regions, GArray ***limbs);
 
 /**
  * Finds where each frame lies on the first one's page: by the shapes of equal paint and size in the

@@ -28,19 +28,25 @@ static FlRect area_of(const FlPaintedRegion *painted, FlPaintArea area)
     return whole ? (FlRect){0, 0, painted->width, painted->height} : painted->rect;
 }
 
-#define ANCHOR "Anchor" // the numbers of the region's anchor, in the order of their fields
-#define ANCHOR_NUMBERS (sizeof(FlAnchor) / sizeof(float))
+#define ANCHOR "Anchor" // the numbers of the region's anchor, and of its limbs, field by field
+#define ANCHOR_NUMBERS (int)(sizeof(FlAnchor) / sizeof(float))
+#define LIMB_NUMBERS (int)(sizeof(FlLimb) / sizeof(float))
 
-static char *anchor_text(const FlAnchor *anchor)
+static void append_numbers(GString *text, const float *value, int n)
 {
-    float value[ANCHOR_NUMBERS];
-    GString *text = g_string_new(NULL);
-    memcpy(value, anchor, sizeof value);
-    for (size_t k = 0; k < ANCHOR_NUMBERS; k++) {
+    for (int k = 0; k < n; k++) {
         char number[G_ASCII_DTOSTR_BUF_SIZE];
         g_ascii_formatd(number, sizeof number, "%.9g", (double)value[k]);
-        g_string_append_printf(text, k ? " %s" : "%s", number);
+        g_string_append_printf(text, text->len ? " %s" : "%s", number);
     }
+}
+
+static char *anchor_text(const FlPaintedRegion *painted)
+{
+    GString *text = g_string_new(NULL);
+    append_numbers(text, (const float *)(const void *)&painted->anchor, ANCHOR_NUMBERS);
+    append_numbers(text, (const float *)(const void *)painted->limb,
+                   painted->n_limbs * LIMB_NUMBERS);
     return g_string_free(text, FALSE);
 }
 
@@ -54,21 +60,42 @@ static bool is_anchor(const FlAnchor *anchor)
     return good;
 }
 
+/* The same of a limb, whose covariance is below its variances. */
+static bool is_limb(const FlLimb *limb)
+{
+    const float most = FL_POSE_MOST_PX * FL_POSE_MOST_PX, *spread = limb->spread;
+    return is_anchor(&limb->anchor) && fabsf(limb->x) <= FL_POSE_MOST_PX &&
+           fabsf(limb->y) <= FL_POSE_MOST_PX && spread[0] >= 0 && spread[0] <= most &&
+           spread[1] >= 0 && spread[1] <= most && spread[2] * spread[2] <= spread[0] * spread[1];
+}
+
+/* Reads n numbers and moves on. */
+static bool read_numbers(char **at, float *value, int n)
+{
+    for (int k = 0; k < n; k++) {
+        char *const from = *at;
+        value[k] = (float)g_ascii_strtod(from, at);
+        if (*at == from)
+            return false;
+    }
+    return true;
+}
+
 /* Files of other programs have no anchor; then it stays unchanged. */
-static void load_anchor(const char *path, FlAnchor *anchor)
+static void load_anchor(const char *path, FlPaintedRegion *painted)
 {
     g_autofree char *text = fl_png_text(path, ANCHOR);
-    float value[ANCHOR_NUMBERS];
-    FlAnchor read;
-    char *at = text, *end = NULL;
-    for (size_t k = 0; at && k < ANCHOR_NUMBERS; k++, at = end) {
-        value[k] = (float)g_ascii_strtod(at, &end);
-        if (end == at)
-            return;
-    }
-    memcpy(&read, value, sizeof read);
-    if (at && is_anchor(&read))
-        *anchor = read;
+    char *at = text;
+    FlAnchor anchor;
+    FlLimb limb;
+    if (!text || !read_numbers(&at, (float *)(void *)&anchor, ANCHOR_NUMBERS) ||
+        !is_anchor(&anchor))
+        return;
+    painted->anchor = anchor;
+    painted->n_limbs = 0;
+    while (painted->n_limbs < FL_LIMBS && read_numbers(&at, (float *)(void *)&limb, LIMB_NUMBERS) &&
+           is_limb(&limb))
+        painted->limb[painted->n_limbs++] = limb;
 }
 
 bool fl_paint_file_save(const FlPaintedRegion *painted, FlPaintArea area, const char *path,
@@ -89,7 +116,7 @@ bool fl_paint_file_save(const FlPaintedRegion *painted, FlPaintArea area, const 
             fl_painted_pixel(&look.region, (size_t)y * (size_t)rect.width + (size_t)x,
                              rgba + 4 * ((size_t)(rect.y - part.y + y) * (size_t)part.width +
                                          (size_t)(rect.x - part.x + x)));
-    g_autofree char *anchor = anchor_text(&painted->anchor);
+    g_autofree char *anchor = anchor_text(painted);
     const char *const text[] = {ANCHOR, anchor, NULL};
     const FlPng png = {.width = part.width,
                        .height = part.height,
@@ -133,7 +160,7 @@ bool fl_paint_file_load(FlPaintedRegion *painted, const char *path, GError **err
     }
     if (!fl_painted_renew(painted, error))
         return false;
-    load_anchor(path, &painted->anchor);
+    load_anchor(path, painted);
     const int left = whole ? rect.x : 0, top = whole ? rect.y : 0;
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {

@@ -281,8 +281,12 @@ bool fl_painter_frame(FlPainter *painter, int frame, GError **error)
     const int hold = painter->plan->settings.hold, index = frame / hold;
     if (painter->origin == FL_FROM_NOWHERE)
         return true;
-    if (drawing)
-        painter->result.anchor = fl_drawing_anchor(drawing, painter->plan->region, index * hold);
+    if (drawing) {
+        const int region = painter->plan->region;
+        painter->result.anchor = fl_drawing_anchor(drawing, region, index * hold);
+        painter->result.n_limbs =
+            fl_drawing_limbs(drawing, region, index * hold, painter->result.limb);
+    }
     if (painter->origin == FL_FROM_FILE)
         return load_paint(painter, frame, error);
     const int k = painter->loop.n + index;

@@ -9,8 +9,9 @@
 typedef struct Outline {
     GArray *nodes; // FlPoint
     FlPoint least, most;
-    double area;    // twice the area, with a sign
-    FlPoint moment; // six times the area's
+    double area;      // twice the area, with a sign
+    FlPoint moment;   // six times the area's
+    double square[3]; // 12 times the second moments of the area: xx, yy, xy
 } Outline;
 
 /* Adds the triangle between a side and the first node of all, so that numbers stay small. */
@@ -22,6 +23,9 @@ static void add_side(Outline *outline, FlPoint from, FlPoint to)
     const double cross = a.x * b.y - a.y * b.x;
     outline->area += cross;
     outline->moment.x += cross * (a.x + b.x), outline->moment.y += cross * (a.y + b.y);
+    outline->square[0] += cross * (a.x * a.x + a.x * b.x + b.x * b.x);
+    outline->square[1] += cross * (a.y * a.y + a.y * b.y + b.y * b.y);
+    outline->square[2] += cross * (a.x * a.y + b.x * b.y + (a.x * b.y + a.y * b.x) / 2);
 }
 
 static void add_node(Outline *outline, FlPoint p)
@@ -84,6 +88,25 @@ static FlPoint middle_of(const Outline *outline)
                      CLAMP(y, outline->least.y, outline->most.y)};
 }
 
+/* The spread of what it encloses, within that of a rectangle of its extent; of a line that. */
+static void find_spread(const Outline *outline, FlPoint middle, float spread[3])
+{
+    const FlPoint origin = g_array_index(outline->nodes, FlPoint, 0);
+    const double x = middle.x - origin.x, y = middle.y - origin.y;
+    const double width = outline->most.x - outline->least.x;
+    const double height = outline->most.y - outline->least.y;
+    const double most[2] = {width * width / 4, height * height / 4};
+    if (fabs(outline->area) <= FLAT * (width * width + height * height)) {
+        spread[0] = (float)(most[0] / 3), spread[1] = (float)(most[1] / 3), spread[2] = 0;
+        return;
+    }
+    const double all = 6 * outline->area; // 12 times the area
+    const double xx = CLAMP(outline->square[0] / all - x * x, 0, most[0]);
+    const double yy = CLAMP(outline->square[1] / all - y * y, 0, most[1]);
+    const double both = .95 * sqrt(xx * yy), xy = outline->square[2] / all - x * y;
+    spread[0] = (float)xx, spread[1] = (float)yy, spread[2] = (float)CLAMP(xy, -both, both);
+}
+
 /* The sums of the nodes about their mean, times the powers of a root of one and of its inverse. */
 static void find_harmonics(const FlPoint *node, int n, FlPoint mean, float harmonic[2][2])
 {
@@ -110,6 +133,10 @@ bool fl_pose_is_sound(const FlPose *pose)
                         pose->harmonic[1][0],
                         pose->harmonic[1][1]};
     bool small = pose->n >= 0;
+    for (int k = 0; k < 3; k++)
+        small &= fabsf(pose->spread[k]) <= FL_POSE_MOST_PX * FL_POSE_MOST_PX;
+    const float *spread = pose->spread;
+    small &= spread[0] >= 0 && spread[1] >= 0 && spread[2] * spread[2] <= spread[0] * spread[1];
     for (size_t k = 0; k < G_N_ELEMENTS(px); k++)
         small &= fabsf(px[k]) <= FL_POSE_MOST_PX; // not if it is no number
     return small;
@@ -144,6 +171,7 @@ FlPose fl_outline_pose(const FlOutlines *outlines, int leaf)
                    .y = (float)mean.y,
                    .middle_x = (float)middle.x,
                    .middle_y = (float)middle.y};
+    find_spread(&outline, middle, pose.spread);
     find_harmonics((const FlPoint *)(void *)nodes->data, n, mean, pose.harmonic);
     return sound(pose);
 }

@@ -12,6 +12,7 @@ typedef struct FlPose {
     int32_t n;                // nodes; 0: the pose is unknown
     float x, y;               // their mean
     float middle_x, middle_y; // of what the outline encloses, whatever its nodes are
+    float spread[3];          // variances along x and y of what it encloses, their covariance, px^2
     float harmonic[2][2];     // the first and the last one of the nodes about their mean, in their
                               // order, as real and imaginary part: both turn with the outline
 } FlPose;
