@@ -258,6 +258,26 @@ rm -rf o mixed/m_3.svg && crash_one --missing skip mixed && [ ! -e o/1.png ] && 
     grep -q '1 frame could not be read or drawn and was skipped' err
 result $? 'or skips them'
 
+# rest_a_while FOLDER: the film slow/, whose processes all stop for longer than a frame may take.
+rest_a_while() {
+    local group
+    setsid nice -n 19 "$program" slow --flat -j 1 -W 800 -o "$1/%d.png" -q --limit seconds=4 --missing hold &
+    for _ in 1 2 3; do
+        sleep 0.5
+        group=$(ps -eo pid=,pgid= | awk -v leader=$! '$2 == leader { print $1 }' | xargs)
+        # shellcheck disable=SC2086 # a list
+        kill -STOP $group 2>/dev/null && sleep 5 && kill -CONT $group 2>/dev/null
+    done
+    wait $!
+}
+mkdir slow
+for i in 1 2 3; do
+    svg slow/s_$i.svg "<filter id='f' x='0' y='0' width='1' height='1'><feTurbulence baseFrequency='.0$i'
+        numOctaves='9'/></filter><rect width='48' height='48' filter='url(#f)'/>$shape"
+done
+"$program" slow --flat -W 800 -o 'awake/%d.png' -q && rest_a_while rested && same awake rested
+result $? 'a film that is stopped for a while, at the lowest priority, is drawn as if it were not'
+
 # What a drawing must not see: the same bytes as if it were not there.
 cd ..
 mkdir outside
