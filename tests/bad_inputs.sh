@@ -47,6 +47,9 @@ printf "<svg xmlns='http://www.w3.org/2000/svg'>%s" "$(printf '<g>%.0s' {1..300}
 printf '\x1f\x8b\x08garbage' >packed.svg
 printf '\xff\xfe\x00<' >binary.svg
 svg nothing ''
+svg nbsp "$shape<text>a&nbsp;b</text>"
+svg dashes "<!-- a -- b -->$shape"
+svg latin "<desc>$(printf 'caf\xe9')</desc>$shape"
 svg negative "$shape" "width='-4' height='9'"
 mkfifo pipe.svg pipe.png pipe.conf
 own pipeframe && rm pipeframe/frames/0002.png && mkfifo pipeframe/frames/0002.png
@@ -200,6 +203,11 @@ table() {
 2|x.mp4: flats are PNG files; expected .png|good --flat -o x.mp4
 1|huge/a_1.svg: a picture of 1000000000 x 9 px; at most 32767 px *|huge
 1|twice/a_1.svg: not well-formed: line 2: Attribute a redefined|twice
+1|nbsp/a_1.svg: not well-formed: line 1: Entity 'nbsp' not defined; *&#160;|nbsp
+1|dashes/a_1.svg: not well-formed: line 1: Double hyphen *; take “--” out of the comment|dashes
+1|latin/a_1.svg: not well-formed: line 1: the text is not UTF-8; save it as UTF-8, or *|latin
+1|film.lottie: is a Lottie animation: fluidy-frames *; see fluidy-exports(7)|film.lottie
+1|walk_%d.PNG: is pixels, not shapes: *fluidy-style import*|walk_%d.PNG
 1|other/a_2.svg: the root is <svg>, expected <svg xmlns="http://www.w3.org/2000/svg">|other
 1|text/a_1.svg: not well-formed: line 1: *|text
 1|html/a_1.svg: the root is <html>, expected <svg *|html

@@ -128,6 +128,17 @@ svg x.svg "<pattern id='p' width='9' height='9' patternUnits='userSpaceOnUse'><r
     marker-end='url(#m)'/></g>$shape"
 look && grep -q aa3311 out
 result $? 'so are those in patterns and markers'
+for body in "<rect width='30' height='30' fill='#a31' clip-path='url(#c)'/>" "<g clip-path='url(#c)'>$shape</g>" \
+    "<g clip-path='url(#c)' opacity='.5'>$shape<circle r='9' fill='#13a'/></g>$shape"; do
+    svg x.svg "<clipPath id='c'><path d='M-6000 -6000H40V40H-6000z'/></clipPath>$body"
+    look && grep -q aa3311 out || break
+done
+result $? 'a clip path that reaches far off the page is drawn'
+echo "<svg xmlns='http://www.w3.org/2000/svg' width='48' height='48'>$shape$(for i in $(seq 3000); do
+    echo "<g data-x='$(printf '%04000d' 0)'/>"
+done)</svg>" >x.svg
+look && grep -q aa3311 out
+result $? 'a drawing of 12 MB is read'
 svg x.svg "$(for i in $(seq 8000); do
     echo "<circle cx='$((i % 47))' cy='$((i % 43))' r='2' fill='#a31'/>"
 done)$shape"

@@ -95,13 +95,42 @@ echo '{"w": 40, "h": 32}' >empty.json
 if ! command -v chromium >/dev/null; then
     skip 'a Lottie animation becomes frames' 'no chromium'
 else
-    "$plugins/lottie/lottie_frames.py" player.js film.json lottie >out 2>err && [ ! -s err ] &&
+    frames=$plugins/frames/fluidy-frames
+    chmod 755 "$folder"
+    timeout 120 "$frames" --player player.js film.json -o lottie >out 2>err && [ ! -s err ] &&
         fluidy-svg lottie --list-regions >out && grep -q '^red.* 3/3 .*sun & <b>$' out &&
         grep -q 'cx="14"' lottie/0003.svg
     result $? 'a Lottie animation becomes frames with the names of its layers'
-    "$plugins/lottie/lottie_frames.py" player.js empty.json none >out 2>err
-    [ $? = 1 ] && grep -q 'empty.json: player.js drew no frame: .*' err && [ "$(wc -l <err)" = 1 ]
+    timeout 120 "$frames" --player player.js empty.json -o none >out 2>err
+    [ $? = 1 ] && grep -q 'empty.json: no frame was drawn: .*' err && [ "$(wc -l <err)" = 1 ]
     result $? 'and one that cannot be played is told'
+    mkdir animations && mv film.json animations/ && python3 -m zipfile -c film.lottie animations &&
+        timeout 120 "$frames" --player player.js film.lottie -o packed >out 2>err && diff -r lottie packed >out
+    result $? 'so does an archive of one'
+
+    # Moved by a timer, by an attribute, by Web Animations, by CSS and by SMIL; and it looks where it should not.
+    echo secret >secret.txt && mkdir site && cat >site/page.html <<'END'
+<!doctype html><style>@keyframes k { to { transform: rotate(90deg) } } #css { animation: k 1s linear }</style>
+<svg viewBox="0 0 100 100" width="200" height="200"><g fill="#a31"><rect id="script" y="1" width="20" height="20"/></g>
+<rect id="timer" width="9" height="9"/><rect id="css" width="20" height="20" style="transform-origin: 20px 20px"/>
+<circle id="web" cx="20" cy="80" r="9"/><ellipse cy="50" rx="5" ry="9"><animate attributeName="cx" from="50" to="90"
+dur="1s"/></ellipse></svg><script src="move.js"></script><script>
+const id = (name) => document.getElementById(name);
+setInterval(() => id("timer").setAttribute("x", +id("timer").getAttribute("x") + 1), 100);
+id("web").animate([{ transform: "none" }, { transform: "translate(40px, 0px)" }], 1000);
+for (const place of ["../secret.txt", "file:///etc/passwd", "http://example.org/"])
+    fetch(place).then((r) => r.ok && r.text()).then((text) => { if (text) id("web").id = "leak"; }, () => 0);
+</script>
+END
+    echo '(function tick() { document.getElementById("script").setAttribute("x", performance.now() / 20);
+        requestAnimationFrame(tick); })()' >site/move.js
+    timeout 120 "$frames" site/page.html -o page --fps 8 --seconds 1 >out 2>err && [ "$(ls page | wc -l)" = 8 ] &&
+        for moved in 'x="25"' 'x="[45]"' 'matrix(0.707107, 0.707107' 'matrix(1, 0, 0, 1, 20, 0)' 'cx: 70px' '(170, 51, 17)'; do
+            grep -q "$moved" page/0005.svg || break
+        done && ! grep -q leak page/0008.svg && ! grep -q '<script\|<animate\|@keyframes' page/0005.svg
+    result $? 'a page becomes frames, whatever moves it; it sees neither other folders nor a network'
+    timeout 120 "$frames" site/page.html -o twice --fps 8 --seconds 1 >out 2>err && diff -r page twice >out
+    result $? 'and the same frames again'
 fi
 
 echo "1..$n"

@@ -237,10 +237,39 @@ static bool add_file(GArray *found, const char *input, GError **error)
     return true;
 }
 
+/** Fails for files of other kinds, whose name tells the way from them to drawings. */
+static bool check_kind(const char *input, GError **error)
+{
+    static const struct {
+        const char *ends, *what;
+    } kinds[] = {
+        {".json .lottie", "a Lottie animation: fluidy-frames writes its frames as SVG"},
+        {".html .htm", "a web page: fluidy-frames writes the frames of the SVG that moves in it"},
+        {".blend", "a scene of Blender: the add-on “fluidy-svg” writes its frames as SVG"},
+        {".mp4 .mov .webm .mkv .avi .gif .png .jpg .jpeg .webp",
+         "pixels, not shapes: expected SVG drawings; ‘fluidy-style import’ makes a style of them"},
+        {".fla .swf .ai .psd .fig .sketch .tnz .kra .xopp .pdf",
+         "a file of another program: export its frames as SVG"},
+    };
+    g_autofree char *lower = g_ascii_strdown(input, -1);
+    const char *end = strrchr(lower, '.');
+    for (size_t i = 0; end && i < G_N_ELEMENTS(kinds); i++) {
+        g_auto(GStrv) ends = g_strsplit(kinds[i].ends, " ", -1);
+        if (!g_strv_contains((const char *const *)ends, end))
+            continue;
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: is %s; see fluidy-exports(7)", input,
+                    kinds[i].what);
+        return false;
+    }
+    return true;
+}
+
 static bool add_input(GArray *found, const char *input, FlWarnings *warnings, GError **error)
 {
     if (g_file_test(input, G_FILE_TEST_IS_DIR))
         return add_folder(found, input, warnings, error);
+    if (!check_kind(input, error))
+        return false;
     if (g_file_test(input, G_FILE_TEST_EXISTS)) { // also a file with # or * in its name
         add_file(found, input, NULL);
         number_files(found);
@@ -403,7 +432,7 @@ static char *shared_name(const Found *first)
         const char *dot = strrchr(base, '.');
         name = g_strndup(base, dot ? (gsize)(dot - base) : strlen(base));
     }
-    for (size_t n = strlen(name); n > 0 && strchr("_-. ", name[n - 1]); n--)
+    for (size_t n = strlen(name); n > 0 && strchr("_-. (", name[n - 1]); n--)
         name[n - 1] = '\0';
     if (name[0])
         return name;

@@ -88,9 +88,10 @@ bool fl_declare(xmlNode *node, const char *declarations)
     return true;
 }
 
-bool fl_document_is_huge(void)
+bool fl_document_is_huge(size_t bytes)
 {
-    return fl_limit(FL_LIMIT_DEPTH) > 250 || fl_limit(FL_LIMIT_PATH) > 9000000 ||
+    enum { LARGEST = 9000000 }; // bytes that the XML parsers take as usual
+    return bytes > LARGEST || fl_limit(FL_LIMIT_DEPTH) > 250 || fl_limit(FL_LIMIT_PATH) > 9000000 ||
            fl_limit(FL_LIMIT_ELEMENTS) > 200000;
 }
 
@@ -152,18 +153,31 @@ static void start_parser(void)
     }
 }
 
-/** Sentences for messages of libxml2 that only its own users understand. */
-static const char *plain_xml_words(const char *message)
+/** A message of libxml2, with the remedy where it has one, or in words that not only its own users
+ * understand; to be freed. */
+static char *plain_xml_words(const char *message)
 {
-    static const char *const words[][2] = {
+    static const struct {
+        const char *start, *words;
+        bool remedy; // the words follow the message, instead of taking its place
+    } known[] = {
         {"Excessive depth",
-         "elements are nested deeper than 256 levels; use ‘limit’ depth=N to allow more"},
-        {"Start tag expected", "expected an SVG drawing, which begins with “<”"},
+         "elements are nested deeper than 256 levels; use ‘limit’ depth=N to allow more", false},
+        {"Start tag expected", "expected an SVG drawing, which begins with “<”", false},
+        {"Entity '",
+         "XML knows amp, lt, gt, quot and apos: write the letter itself or its number, as &#160;",
+         true},
+        {"Double hyphen within comment", "take “--” out of the comment", true},
+        {"Input is not proper UTF-8",
+         "the text is not UTF-8; save it as UTF-8, or begin it with <?xml version=\"1.0\" "
+         "encoding=\"windows-1252\"?> if that is what it is",
+         false},
     };
-    for (size_t i = 0; i < G_N_ELEMENTS(words); i++)
-        if (g_str_has_prefix(message, words[i][0]))
-            return words[i][1];
-    return message;
+    for (size_t i = 0; i < G_N_ELEMENTS(known); i++)
+        if (g_str_has_prefix(message, known[i].start))
+            return g_strconcat(known[i].remedy ? message : "", known[i].remedy ? "; " : "",
+                               known[i].words, NULL);
+    return g_strdup(message);
 }
 
 /** Parses; problem gets libxml2's message with its line if the text is no XML. */
@@ -172,13 +186,12 @@ static xmlDoc *parse(const char *data, gsize bytes, const char *path, char **pro
     start_parser();
     xmlParserCtxt *context = xmlNewParserCtxt();
     const int options = XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
-                        (fl_document_is_huge() ? XML_PARSE_HUGE : 0);
+                        (fl_document_is_huge(bytes) ? XML_PARSE_HUGE : 0);
     xmlDoc *doc = xmlCtxtReadMemory(context, data, (int)bytes, path, NULL, options);
     const xmlError *e = xmlCtxtGetLastError(context);
+    g_autofree char *words = e && e->message ? plain_xml_words(g_strchomp(e->message)) : NULL;
     if (!doc && problem)
-        *problem = e && e->message ? g_strdup_printf("line %d: %s", e->line,
-                                                     plain_xml_words(g_strchomp(e->message)))
-                                   : g_strdup("no XML");
+        *problem = words ? g_strdup_printf("line %d: %s", e->line, words) : g_strdup("no XML");
     xmlFreeParserCtxt(context);
     return doc;
 }

@@ -21,8 +21,9 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlChar, xmlFree)
  */
 xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GError **error);
 
-/** Returns: true if a limit was raised beyond the defaults of libxml2 and librsvg. */
-bool fl_document_is_huge(void);
+/** Returns: true if a text of so many bytes, or a limit that was raised, is beyond what libxml2 and
+ * librsvg take by themselves. */
+bool fl_document_is_huge(size_t bytes);
 
 /** The document as XML; to be freed with g_free(). */
 char *fl_document_text(xmlDoc *doc, size_t *bytes);

@@ -3,7 +3,10 @@
 #include "svg/effects.h"
 #include "svg/normalise.h"
 
+#include <math.h>
 #include <string.h>
+
+#define VAST 30 // pages; at 39 cairo's script surface aborts
 
 static const char *const shapes[] = {"g",      "svg",     "a",    "path",     "rect",
                                      "circle", "ellipse", "line", "polyline", "polygon",
@@ -16,13 +19,53 @@ static bool is_in_marker(const xmlNode *node)
     return node != NULL;
 }
 
-/** Returns: true if a node may cause librsvg to draw any leaf on a separate surface; defined: the
- * node is part of a definition. */
+/** The largest number in a text, by magnitude. */
+static double largest_number(const char *text)
+{
+    double largest = 0;
+    for (const char *s = text; s && *s;) {
+        char *end;
+        const double number = g_ascii_strtod(s, &end);
+        largest = fmax(largest, fabs(number));
+        s = end > s ? end : s + 1;
+    }
+    return largest;
+}
+
+/** The larger side of the page in user space, about. */
+static double page_side(const xmlNode *root)
+{
+    static const char *const names[] = {"viewBox", "width", "height"};
+    double side = 1;
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
+        g_autoptr(xmlChar) value = fl_attribute(root, names[i]);
+        side = fmax(side, largest_number((const char *)value));
+    }
+    return side;
+}
+
+/** Returns: true if shapes of a clip path reach far beyond the page. */
+static bool is_vast(const xmlNode *shape, double side)
+{
+    for (; shape; shape = shape->next)
+        for (const xmlAttr *a = shape->type == XML_ELEMENT_NODE ? shape->properties : NULL; a;
+             a = a->next) {
+            g_autoptr(xmlChar) value = xmlNodeListGetString(shape->doc, a->children, 1);
+            if (largest_number((const char *)value) > VAST * side)
+                return true;
+        }
+    return false;
+}
+
+/** Returns: true if a node may cause librsvg to draw any leaf on a separate surface, or cairo's
+ * script surface to fail; defined: the node is part of a definition. */
 static bool is_apart(const xmlNode *node, bool defined)
 {
     static const char *const anywhere[] = {"pattern", NULL};
     g_autoptr(xmlChar) units = fl_attribute(node, "clipPathUnits");
     return fl_is_one_of(node, anywhere) ||
+           (fl_is(node, "clipPath") &&
+            is_vast(node->children, page_side(xmlDocGetRootElement(node->doc)))) ||
            (units && strcmp((const char *)units, "objectBoundingBox") == 0) ||
            (defined && (fl_is(node, "image") || fl_has_effects(node) ||
                         (fl_is(node, "use") && is_in_marker(node))));
@@ -98,23 +141,26 @@ static void turn_patterns(xmlNode *node)
     }
 }
 
-static void drop_masks(xmlNode *node)
+/** Drops masks and clip paths. */
+static void uncover(xmlNode *node)
 {
     for (; node; node = node->next) {
         if (node->type != XML_ELEMENT_NODE)
             continue;
         g_autoptr(xmlChar) style = fl_attribute(node, "style");
-        if (fl_is_one_of(node, shapes) && style && strstr((const char *)style, "mask"))
-            fl_declare(node, "mask:none");
+        if (fl_is_one_of(node, shapes) && style &&
+            (strstr((const char *)style, "mask") || strstr((const char *)style, "clip-path")))
+            fl_declare(node, "mask:none;clip-path:none");
         xmlUnsetProp(node, (const xmlChar *)"mask");
-        drop_masks(node->children);
+        xmlUnsetProp(node, (const xmlChar *)"clip-path");
+        uncover(node->children);
     }
 }
 
 void fl_paint_probe_prepare(xmlDoc *doc)
 {
     xmlNode *root = xmlDocGetRootElement(doc);
-    drop_masks(root);
+    uncover(root);
     shrink_images(root);
     turn_children(root);
     turn_patterns(root->children);

@@ -34,7 +34,7 @@ RsvgHandle *fl_svg_make_handle(const FlSvg *svg, const char *text, size_t bytes,
     g_autoptr(GFile) file = g_file_new_for_path(svg->path);
     g_autoptr(GInputStream) stream = g_memory_input_stream_new_from_data(text, (gssize)bytes, NULL);
     const RsvgHandleFlags flags =
-        fl_document_is_huge() ? RSVG_HANDLE_FLAG_UNLIMITED : RSVG_HANDLE_FLAGS_NONE;
+        fl_document_is_huge(bytes) ? RSVG_HANDLE_FLAG_UNLIMITED : RSVG_HANDLE_FLAGS_NONE;
     RsvgHandle *handle = rsvg_handle_new_from_stream_sync(stream, file, flags, NULL, &reason);
     if (!handle)
         fl_svg_set_error(svg, reason, error);
