@@ -1,5 +1,5 @@
 #include "base/rng.h"
-#include "compose/enlarge.h"
+#include "compose/composite.h"
 #include "compose/ink.h"
 #include "compose/knockout.h"
 #include "compose/layer_blend.h"

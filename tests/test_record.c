@@ -1,5 +1,6 @@
 /* Records of renders come back as they were saved, and damaged ones do not. */
 #include "keep/record.h"
+#include <fluidy/error.h>
 
 #include "scratch.h"
 #include <string.h>

@@ -1,5 +1,5 @@
 /* A lower layer below the rim of an upper one: rectangles whose paint is the same everywhere. */
-#include "compose/enlarge.h"
+#include "compose/composite.h"
 #include "compose/underlay.h"
 #include <string.h>
 

@@ -136,17 +136,17 @@ void fl_file_watch_add_all(FlFileWatch *watch, const FlFileWatch *old)
         fl_file_watch_add(watch, file);
 }
 
-FlFileWatch *fl_file_watch_new(const FlRenderOptions *options)
+FlFileWatch *fl_file_watch_new(const char *const *inputs, const char *config)
 {
     FlFileWatch *watch = g_new0(FlFileWatch, 1);
     watch->folders = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, folder_free);
     watch->open = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
     watch->added = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     watch->last = g_strdup("");
-    for (const char *const *input = options->inputs; *input; input++)
+    for (const char *const *input = inputs; *input; input++)
         add_input(watch, *input);
-    if (options->config)
-        fl_file_watch_add(watch, options->config);
+    if (config)
+        fl_file_watch_add(watch, config);
     return watch;
 }
 

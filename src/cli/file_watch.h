@@ -14,7 +14,7 @@ typedef struct FlFileWatch FlFileWatch;
  *
  * Returns: to be freed with fl_file_watch_free().
  */
-FlFileWatch *fl_file_watch_new(const FlRenderOptions *options);
+FlFileWatch *fl_file_watch_new(const char *const *inputs, const char *config);
 
 /** Watches a file, which need not exist, or all files of a folder, until the watch is freed. */
 void fl_file_watch_add(FlFileWatch *watch, const char *path);

@@ -275,7 +275,7 @@ static int watch(FlArgs *args, Reporter *reporter)
     (void)fl_start_workers(); // before the watch starts a thread; a reading without them warns
     g_autoptr(FlFileWatch) before = NULL;
     while (status < 0) {
-        FlFileWatch *files = fl_file_watch_new(&args->render);
+        FlFileWatch *files = fl_file_watch_new(args->render.inputs, args->render.config);
         if (before)
             fl_file_watch_add_all(files, before);
         fl_file_watch_free(before);

@@ -163,7 +163,7 @@ static void watch_input(const char *path, void *data)
 static void watch_anew(Live *live)
 {
     g_autoptr(FlFileWatch) before = live->files;
-    live->files = fl_file_watch_new(&live->args->render);
+    live->files = fl_file_watch_new(live->args->render.inputs, live->args->render.config);
     if (before)
         fl_file_watch_add_all(live->files, before);
 }

@@ -27,6 +27,10 @@ bool fl_composite_init(FlComposite *composite, const FlComposeInput *input, int 
                        FlDrawList *draws, bool with_16, GError **error);
 void fl_composite_clear(FlComposite *composite);
 
+/** Brings all pictures of a composed page of fl_half_side() into the size of a frame, bilinearly;
+ * colours weigh by their alpha. FL_ERROR_NO_MEMORY. */
+bool fl_composite_enlarge(FlComposite *composite, int width, int height, GError **error);
+
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlComposite, fl_composite_clear)
 
 #endif

@@ -1,4 +1,4 @@
-#include "compose/enlarge.h"
+#include "compose/composite.h"
 
 #include "base/alloc.h"
 #include "base/parallel_error.h"

@@ -1,9 +1,23 @@
 #include "compose/ink.h"
 #include "base/density.h"
 #include "base/rect.h"
-#include "compose/interior.h"
 
 #include <string.h>
+
+/** A histogram of amounts. */
+typedef struct Counts {
+    uint64_t count[FL_AMOUNTS]; // weights
+    uint64_t total;             // of the weights
+    uint64_t seen;              // of the pixels, 255 each
+} Counts;
+
+/** Counts a pixel, of which 0..255 is seen, with a weight. */
+static void count_amount(Counts *counts, int amount, uint32_t weight, uint8_t seen)
+{
+    counts->count[amount] += weight, counts->total += weight, counts->seen += seen;
+}
+
+#define ENOUGH 64 // pixels that are trusted with an exposure
 
 #define INSIDE 128
 
@@ -28,7 +42,7 @@
 #define HARD_RIM (FL_AMOUNT_ONE * 2 / 5)
 
 /** The amount below which `percent` of the pixels lie, at least 1. */
-static int percentile(const FlAmountCounts *h, int percent)
+static int percentile(const Counts *h, int percent)
 {
     const uint64_t rank = h->total * (uint64_t)percent / 100;
     uint64_t below = 0;
@@ -64,15 +78,15 @@ static void set_parts(FlInk *ink, const int32_t median[3], int one)
 }
 
 static void count_amounts(const FlInk *ink, const uint8_t *rgb, const uint8_t *mask, size_t n,
-                          FlAmountCounts *h)
+                          Counts *h)
 {
     memset(h, 0, sizeof *h);
     for (size_t i = 0; i < n; i++)
         if (mask[i] >= INSIDE)
-            fl_count_amount(h, fl_ink_amount(ink, rgb + 3 * i), 1, 255);
+            count_amount(h, fl_ink_amount(ink, rgb + 3 * i), 1, 255);
 }
 
-static int mean_amount(const FlAmountCounts *h)
+static int mean_amount(const Counts *h)
 {
     uint64_t sum = 0;
     for (uint64_t a = 0; a < FL_AMOUNTS; a++)
@@ -110,7 +124,7 @@ FlInk *fl_ink_new(const uint8_t paper[3], const uint8_t *rgb, const uint8_t *mas
                   GError **error)
 {
     g_autoptr(FlInk) ink = g_new0(FlInk, 1);
-    g_autofree FlAmountCounts *h = g_new0(FlAmountCounts, 1);
+    g_autofree Counts *h = g_new0(Counts, 1);
     int32_t median[3];
     int64_t square = 0;
     memcpy(ink->paper, paper, 3);
@@ -157,43 +171,69 @@ void fl_ink_free(FlInk *ink)
 
 /** Counts a row of n pixels: fully where `inner` is set, less where `near` is set. */
 static void count_row(const FlInk *ink, const uint8_t *rgb, const uint8_t *coverage,
-                      const uint8_t *near, const uint8_t *inner, int n, FlAmountCounts *h)
+                      const uint8_t *near, const uint8_t *inner, int n, Counts *h)
 {
     for (FlColumns run = fl_next_run(coverage, 0, n); run.first < run.last;
          run = fl_next_run(coverage, run.last, n))
         for (int x = run.first; x < run.last; x++)
             if (coverage[x])
-                fl_count_amount(h, fl_ink_amount(ink, rgb + 3 * x),
-                                256u * inner[x] + 16u * near[x] + coverage[x], coverage[x]);
+                count_amount(h, fl_ink_amount(ink, rgb + 3 * x),
+                             256u * inner[x] + 16u * near[x] + coverage[x], coverage[x]);
+}
+
+static void keep_least(uint8_t *restrict row, const uint8_t *other, int n)
+{
+    for (int x = 0; x < n; x++)
+        row[x] = MIN(row[x], other[x]);
+}
+
+/**
+ * Row y of what lies inside a width * height mask, 0..255, with a margin: inner[x], of width bytes,
+ * becomes the least of the mask at the pixel and at the corners and sides of a square margin_px
+ * around. Beyond the mask it is taken to go on.
+ */
+static void interior_row(const uint8_t *mask, int width, int height, int y, int margin_px,
+                         uint8_t *inner)
+{
+    const int above = y - margin_px, below = y + margin_px, n = MAX(width - margin_px, 0);
+    g_autofree uint8_t *rows = g_memdup2(mask + (size_t)y * width, (size_t)width);
+    if (above >= 0)
+        keep_least(rows, mask + (size_t)above * width, width);
+    if (below < height)
+        keep_least(rows, mask + (size_t)below * width, width);
+    memcpy(inner, rows, (size_t)width);
+    keep_least(inner + margin_px, rows, n);
+    keep_least(inner, rows + margin_px, n);
+}
+
+/** The exposure that brings the median of what was counted to one; fewer pixels than
+ * ENOUGH lean to FL_EXPOSURE_ONE. Returns: FL_EXPOSURE_MIN … FL_EXPOSURE_MAX. */
+static int exposure_of(const Counts *h)
+{
+    if (h->total == 0)
+        return FL_EXPOSURE_ONE;
+    const int64_t exposure = FL_EXPOSURE_ONE * FL_AMOUNT_ONE / percentile(h, 50);
+    const int64_t enough = 255 * ENOUGH, sure = (int64_t)MIN(h->seen, 255u * ENOUGH);
+    return (int)((CLAMP(exposure, FL_EXPOSURE_MIN, FL_EXPOSURE_MAX) * sure +
+                  FL_EXPOSURE_ONE * (enough - sure)) /
+                 enough);
 }
 
 int fl_ink_exposure(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
                     int height)
 {
-    g_autofree FlAmountCounts *h = g_new0(FlAmountCounts, 1);
+    g_autofree Counts *h = g_new0(Counts, 1);
     g_autofree uint8_t *near = g_malloc(2 * (size_t)width);
     uint8_t *inner = near + width;
     for (int y = 0; y < height; y++) {
         const size_t row = (size_t)y * (size_t)width;
         if (fl_is_blank(coverage + row, (size_t)width)) // as most rows are
             continue;
-        fl_interior_row(coverage, width, height, y, 1, near);
-        fl_interior_row(coverage, width, height, y, 2, inner);
+        interior_row(coverage, width, height, y, 1, near);
+        interior_row(coverage, width, height, y, 2, inner);
         count_row(ink, painted + 3 * row, coverage + row, near, inner, width, h);
     }
-    return fl_counts_exposure(h);
-}
-
-int fl_counts_exposure(const FlAmountCounts *h)
-{
-    if (h->total == 0)
-        return FL_EXPOSURE_ONE;
-    const int64_t exposure = FL_EXPOSURE_ONE * FL_AMOUNT_ONE / percentile(h, 50);
-    const int64_t enough = 255 * FL_COUNTS_ENOUGH,
-                  sure = (int64_t)MIN(h->seen, 255u * FL_COUNTS_ENOUGH);
-    return (int)((CLAMP(exposure, FL_EXPOSURE_MIN, FL_EXPOSURE_MAX) * sure +
-                  FL_EXPOSURE_ONE * (enough - sure)) /
-                 enough);
+    return exposure_of(h);
 }
 
 /** The cubic that is 0 at toe_end with slope 0 and meets the identity at toe, slope included. */

@@ -16,22 +16,6 @@
 #define FL_EXPOSURE_MIN (FL_EXPOSURE_ONE / 4)
 #define FL_EXPOSURE_MAX (FL_EXPOSURE_ONE * 8)
 
-/** A histogram of amounts. */
-typedef struct FlAmountCounts {
-    uint64_t count[FL_AMOUNTS]; // weights
-    uint64_t total;             // of the weights
-    uint64_t seen;              // of the pixels, 255 each
-} FlAmountCounts;
-
-/** Counts a pixel, of which 0..255 is seen, with a weight. */
-static inline void fl_count_amount(FlAmountCounts *counts, int amount, uint32_t weight,
-                                   uint8_t seen)
-{
-    counts->count[amount] += weight, counts->total += weight, counts->seen += seen;
-}
-
-#define FL_COUNTS_ENOUGH 64 // pixels that are trusted with an exposure
-
 /**
  * The properties of a style's paint.
  *
@@ -94,10 +78,6 @@ static inline int fl_ink_amount(const FlInk *ink, const uint8_t *rgb)
  */
 int fl_ink_exposure(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
                     int height);
-
-/** The exposure that brings the median of what was counted to one; fewer pixels than
- * FL_COUNTS_ENOUGH lean to FL_EXPOSURE_ONE. Returns: FL_EXPOSURE_MIN … FL_EXPOSURE_MAX. */
-int fl_counts_exposure(const FlAmountCounts *counts);
 
 /** The amount after exposure, toe and shoulder, 0 … FL_AMOUNTS - 1; it never falls as amount rises.
  */

@@ -2,13 +2,12 @@
 
 #include <sys/resource.h>
 
-bool fl_stats_init(FlStats *stats, const FlRenderOptions *options, GError **error)
+bool fl_stats_init(FlStats *stats, const char *path, bool overwrite, GError **error)
 {
     *stats = (FlStats){0};
-    if (!options->stats)
+    if (!path)
         return true;
-    const bool overwrite = options->overwrite != FL_OVERWRITE_REFUSE;
-    stats->open = fl_atomic_open(&stats->file, options->stats, overwrite, error);
+    stats->open = fl_atomic_open(&stats->file, path, overwrite, error);
     return stats->open;
 }
 

@@ -4,7 +4,6 @@
 
 #include "compose/painted_region.h"
 #include "io/atomic_file.h"
-#include <fluidy/render.h>
 
 /** Seconds by stage, and the file of --stats, which appears when it is complete. */
 typedef struct FlStats {
@@ -13,8 +12,8 @@ typedef struct FlStats {
     double read_s, guides_s, paint_s, compose_s, write_s;
 } FlStats;
 
-/** Opens the file, if options name one. */
-bool fl_stats_init(FlStats *stats, const FlRenderOptions *options, GError **error);
+/** Opens the file; path NULL: there is none. */
+bool fl_stats_init(FlStats *stats, const char *path, bool overwrite, GError **error);
 
 /**
  * Writes a line for each of the n regions and each of its levels in a frame, then a line for the

@@ -170,7 +170,8 @@ static bool begin(FlPlan *plan, const FlPlan *before, const FlRenderOptions *opt
     if (before)
         plan->cache = before->cache;
     else if (!options->dry_run && !options->merge)
-        plan->cache = fl_store_open(options, memory);
+        plan->cache = fl_store_open(&(FlStoreOptions){options->cache, options->cache_size, memory,
+                                                      options->warning, options->data});
     plan->config = same_config ? before->config : fl_config_load(options->config, options, error);
     if (!plan->config)
         return false;

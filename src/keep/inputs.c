@@ -1,6 +1,5 @@
 #include "keep/inputs.h"
 
-#include "base/style_parts.h"
 #include "io/pattern.h"
 #include "io/picture_file.h"
 #include <fcntl.h>
@@ -94,7 +93,7 @@ static GPtrArray *names_in(const char *folder)
 /* The folders of a style, each before its files; to be freed. */
 static GPtrArray *files_of_style(const char *style)
 {
-    static const char *const parts[] = {FL_STYLE_PARTS};
+    static const char *const parts[] = {"", "frames", "masks", "flow"};
     GPtrArray *files = g_ptr_array_new_with_free_func(g_free);
     for (size_t k = 0; k < G_N_ELEMENTS(parts); k++) {
         char *folder = g_build_filename(style, parts[k], NULL);
@@ -128,8 +127,10 @@ void fl_inputs_add_drawing(FlInputs *inputs, const FlDrawing *drawing)
         fl_inputs_add(inputs, linked[k]);
 }
 
-void fl_inputs_add_frames(FlInputs *inputs, const FlDrawing *drawing, const char *pattern,
-                          const char *region)
+/** Adds the files of an option that may name one for each frame and {region}. pattern and region
+ * may be NULL. */
+static void add_frames(FlInputs *inputs, const FlDrawing *drawing, const char *pattern,
+                       const char *region)
 {
     fl_inputs_add(inputs, pattern);
     for (int f = 0; pattern && fl_input_is_pattern(pattern) && f < fl_drawing_frames(drawing);
@@ -151,9 +152,9 @@ void fl_inputs_add_options(FlInputs *inputs, const FlRenderOptions *options,
     if (options->paper && fl_picture_named(options->paper)) // no word for a paper
         fl_inputs_add(inputs, options->paper);
     for (size_t k = 0; k < G_N_ELEMENTS(patterns); k++) {
-        fl_inputs_add_frames(inputs, drawing, patterns[k], NULL);
+        add_frames(inputs, drawing, patterns[k], NULL);
         for (const char *const *region = regions; region && *region; region++)
-            fl_inputs_add_frames(inputs, drawing, patterns[k], *region);
+            add_frames(inputs, drawing, patterns[k], *region);
     }
 }
 

@@ -23,11 +23,6 @@ void fl_inputs_add_style(FlInputs *inputs, const char *folder);
 /** Adds the files of a drawing's frames and all that they refer to. */
 void fl_inputs_add_drawing(FlInputs *inputs, const FlDrawing *drawing);
 
-/** Adds the files of an option that may name one for each frame and {region}. pattern and region
- * may be NULL. */
-void fl_inputs_add_frames(FlInputs *inputs, const FlDrawing *drawing, const char *pattern,
-                          const char *region);
-
 /** Adds config, paper, background, flow and the paint that a merge reads. regions ends in NULL. */
 void fl_inputs_add_options(FlInputs *inputs, const FlRenderOptions *options,
                            const FlDrawing *drawing, const char *const *regions);

@@ -22,13 +22,12 @@ typedef struct HeldPicture {
 } HeldPicture;
 
 struct FlStore {
-    const FlRenderOptions *options;
-    char *folder;     // NULL: there is only memory
-    double limit;     // bytes
-    size_t memory;    // bytes that pictures may take
-    GMutex lock;      // of what follows
-    GHashTable *link; // of the pictures in `held`, by name
-    GQueue held;      // of HeldPicture; the one used last is the first
+    FlStoreOptions options; // without the folder
+    char *folder;           // NULL: there is only memory
+    double limit;           // bytes
+    GMutex lock;            // of what follows
+    GHashTable *link;       // of the pictures in `held`, by name
+    GQueue held;            // of HeldPicture; the one used last is the first
     size_t held_bytes;
     char *problem; // to be told; may be NULL
     bool told;     // one was
@@ -46,20 +45,19 @@ static gboolean is_same(const void *a, const void *b)
     return fl_digest_is_same(*(const FlDigest *)a, *(const FlDigest *)b);
 }
 
-FlStore *fl_store_open(const FlRenderOptions *options, size_t memory)
+FlStore *fl_store_open(const FlStoreOptions *options)
 {
-    const char *folder = options->cache;
+    const char *folder = options->folder;
     const bool files = folder && !g_str_equal(folder, "off");
-    if (!files && memory == 0)
+    if (!files && options->memory == 0)
         return NULL;
     FlStore *store = g_new0(FlStore, 1);
-    store->options = options;
-    store->memory = memory;
+    store->options = *options;
     if (files)
         store->folder = g_str_equal(folder, "auto")
                             ? g_build_filename(g_get_user_cache_dir(), "fluidy-svg", "paint", NULL)
                             : g_strdup(folder);
-    store->limit = MIB * (options->cache_size > 0 ? options->cache_size : DEFAULT_MIB);
+    store->limit = MIB * (options->mib > 0 ? options->mib : DEFAULT_MIB);
     store->link = g_hash_table_new(hash_of, is_same);
     g_mutex_init(&store->lock);
     return store;
@@ -107,7 +105,7 @@ static void hold(FlStore *store, FlDigest name, const FlSpan *parts, int n)
     g_queue_push_head(&store->held, held);
     g_hash_table_insert(store->link, &held->name, store->held.head);
     store->held_bytes += g_bytes_get_size(held->bytes);
-    while (store->held_bytes > store->memory)
+    while (store->held_bytes > store->options.memory)
         let_go(store, store->held.tail);
     g_mutex_unlock(&store->lock);
 }
@@ -137,8 +135,8 @@ void fl_store_warn(FlStore *store)
     g_autofree char *text = g_steal_pointer(&store->problem);
     store->told = store->told || text;
     g_mutex_unlock(&store->lock);
-    if (text && store->options->warning)
-        store->options->warning(text, store->options->data);
+    if (text && store->options.warning)
+        store->options.warning(text, store->options.data);
 }
 
 /* ---- files ---------------------------------------------------------------------------------- */
@@ -208,7 +206,7 @@ static void trim(FlStore *store);
 
 void fl_store_put(FlStore *store, FlKept kind, FlDigest name, const FlSpan *parts, int n)
 {
-    if (kind == FL_KEPT_PICTURE && store->memory > 0)
+    if (kind == FL_KEPT_PICTURE && store->options.memory > 0)
         hold(store, name, parts, n);
     if (!store->folder)
         return;

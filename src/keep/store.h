@@ -5,12 +5,13 @@
 
 #include "base/compress.h"
 #include "base/digest.h"
-#include <fluidy/render.h>
+#include <glib.h>
+#include <stdbool.h>
 
 /**
  * A store in use. Any thread may use it, and several processes may share a folder: files appear
  * whole or not at all, and a file that another process removes is made again. Problems are not
- * errors: fl_store_warn() gives the first one to the warning callback of the options.
+ * errors: fl_store_warn() gives the first one to options->warning.
  */
 typedef struct FlStore FlStore;
 
@@ -22,11 +23,17 @@ typedef enum FlKept {
     FL_KEPT_FACTS,   // the facts that decided the paint of a region when it was painted last
 } FlKept;
 
-/**
- * The store in the folder options->cache, and of pictures in so many bytes of memory; options must
- * outlive it. Returns: NULL if there is neither.
- */
-FlStore *fl_store_open(const FlRenderOptions *options, size_t memory);
+/** The options of a store; copied but for data. */
+typedef struct FlStoreOptions {
+    const char *folder; // "auto": in the user's cache; "off" or NULL: none
+    int mib;            // of its files; 0: 8192
+    size_t memory;      // bytes that pictures in memory may take
+    void (*warning)(const char *message, void *data); // may be NULL
+    void *data;
+} FlStoreOptions;
+
+/** Returns: NULL if there is neither a folder nor memory. */
+FlStore *fl_store_open(const FlStoreOptions *options);
 
 /** Removes the least recently used files until the limit is met. NULL is fine. */
 void fl_store_close(FlStore *store);

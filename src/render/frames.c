@@ -4,7 +4,7 @@
 #include "base/memory.h"
 #include "base/page.h"
 #include "base/schedule.h"
-#include "compose/enlarge.h"
+#include "compose/composite.h"
 #include "drawing/hold.h"
 #include "guides/half_guides.h"
 #include "inspect/dump.h"

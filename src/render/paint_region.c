@@ -143,13 +143,13 @@ static bool make_planes(GivenRegion *given, GError **error)
 static bool make_painter(GivenRegion *given, GError **error)
 {
     const FlRegionPaint *region = given->region;
-    const FlRenderOptions options = {.cache = region->cache, .cache_size = region->cache_size};
     g_autoptr(FlInputs) inputs = fl_inputs_new(NULL, NULL);
     FlPainter *painter = &given->painter;
     const bool hidden = fl_mask_store_extent(given->masks, 0).width == 0;
     if (!fl_sealed_read_key(error))
         return false;
-    given->cache = fl_store_open(&options, 0);
+    given->cache =
+        fl_store_open(&(FlStoreOptions){.folder = region->cache, .mib = region->cache_size});
     given->shapes = (FlShapes){.n_frames = region->n_frames,
                                .width = region->width,
                                .height = region->height,

@@ -96,9 +96,6 @@ bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], 
 
 /* ---- the guides of its pictures: their sources, and the part of them that is needed --------- */
 
-/** A part of the page in px of the guides. Drafts halve the size of the guides. */
-FlRect fl_guided_part(const FlStyleInstance *style, FlRect part);
-
 /** The grid of the coarsest level, px of the guides. */
 int fl_guided_grid(const FlStyleInstance *style, FlRect page);
 

@@ -22,14 +22,15 @@ static bool halves(const FlPainter *painter)
     return fl_field_px(painter->plan->style->exemplar) == 2;
 }
 
-FlRect fl_guided_part(const FlStyleInstance *style, FlRect part)
+/** A part of the page in px of the guides. Drafts halve the size of the guides. */
+static FlRect guided_part(const FlStyleInstance *style, FlRect part)
 {
     return fl_field_px(style->exemplar) == 2 ? fl_rect_halved(part) : part;
 }
 
 FlRect fl_painter_guided(const FlPainter *painter)
 {
-    return fl_guided_part(painter->plan->style, painter->result.rect);
+    return guided_part(painter->plan->style, painter->result.rect);
 }
 
 FlRect fl_painter_page(const FlPainter *painter)
@@ -136,7 +137,7 @@ FlGuideSource fl_painter_guide_source(FlPainter *painter)
 
 int fl_guided_grid(const FlStyleInstance *style, FlRect page)
 {
-    const FlRect guided = fl_guided_part(style, page);
+    const FlRect guided = guided_part(style, page);
     return 1 << (MIN(style->exemplar->n_levels, fl_levels_of(guided.width, guided.height)) - 1);
 }
 

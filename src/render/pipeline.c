@@ -180,8 +180,9 @@ static bool prepare(Pipeline *pipeline, GError **error)
     if (!fl_frames_check(frames, error) || !fl_resume_init(&pipeline->resume, plan, error) ||
         !fl_frame_writer_init(&pipeline->writer, plan, &pipeline->resume, frames->background.opaque,
                               pipeline->taker, error) ||
-        !fl_stats_init(&pipeline->stats, &plan->options, error) || !open_report(pipeline, error) ||
-        !begin_export(pipeline, error))
+        !fl_stats_init(&pipeline->stats, plan->options.stats,
+                       plan->options.overwrite != FL_OVERWRITE_REFUSE, error) ||
+        !open_report(pipeline, error) || !begin_export(pipeline, error))
         return false;
     // statistics and reports read the painters' results after writing
     frames->beside = frames->beside && !pipeline->stats.open && !pipeline->report;
