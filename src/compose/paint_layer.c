@@ -2,7 +2,9 @@
 
 #include "base/alloc.h"
 #include "base/colour_difference.h"
+#include "base/rng.h"
 #include "compose/colourise.h"
+#include "compose/dry_marks.h"
 #include "compose/granulation.h"
 #include "compose/knockout.h"
 #include "compose/pigments.h"
@@ -124,8 +126,30 @@ static int16_t *amounts_of(const FlLayerSources *sources, int r, const FlPainted
     return g_steal_pointer(&amounts);
 }
 
-/* Colours a layer by its amounts of paint, once wash and the paper's grain are in them; not in
- * paint that keeps the exemplar's own colours. */
+static FlMarks marks_of(const FlPaintedRegion *painted)
+{
+    const FlMarks said = painted->settings->marks;
+    return painted->settings->tint == FL_TINT_KEEP ? FL_MARKS_OFF
+           : said != FL_MARKS_AUTO                 ? said
+                                                   : painted->style->marks;
+}
+
+/* Puts marks, if the region has any, in the place of a layer's amounts. */
+static bool lay_marks(const FlLayer *layer, const FlComposeInput *input,
+                      const FlPaintedRegion *painted, int16_t *amounts, GError **error)
+{
+    const FlMarks marks = marks_of(painted);
+    const char *fill = fl_drawing_region(input->drawing, painted->region)->paint;
+    const FlMarking marking = {marks,           (float)painted->settings->marks_angle,
+                               painted->anchor, input->tooth,
+                               input->paper_px, fl_key(input->seed, g_str_hash(fill))};
+    return marks <= FL_MARKS_OFF ||
+           fl_marks_lay(&marking, &layer->area, (FlRect){0, 0, input->width, input->height},
+                        layer->coverage, amounts, error);
+}
+
+/* Colours a layer by its amounts of paint, once marks, wash and the paper's grain are in them; not
+ * in paint that keeps the exemplar's own colours. */
 static bool colour_layer(FlLayer *layer, const FlLayerSources *sources, int r,
                          const FlPaintedRegion *painted, FlColouring *colouring, int16_t *amounts,
                          GError **error)
@@ -134,12 +158,14 @@ static bool colour_layer(FlLayer *layer, const FlLayerSources *sources, int r,
     const FlPaintedPart part = part_of(painted);
     const FlWash *wash = fl_wash_of_draw(sources->washes, r);
     g_autofree int8_t *play = NULL;
+    if (!lay_marks(layer, sources->input, painted, amounts, error))
+        return false;
     if (wash) {
         if (!(play = fl_alloc_unset(fl_rect_pixels(layer->area.box), 1, "a layer", error)))
             return false;
         fl_wash_lay(wash, whiteness_of(colouring, wash), &layer->area, amounts, play);
     }
-    if (t->tint != FL_TINT_KEEP)
+    if (t->tint != FL_TINT_KEEP && marks_of(painted) <= FL_MARKS_OFF)
         fl_granulate(isnan(t->granulation) ? painted->style->granulation : (float)t->granulation,
                      sources->input->tooth, &layer->area, amounts);
     colouring->play = play;

@@ -21,6 +21,7 @@ typedef struct FlStyleInstance {
     FlInk *ink;
     struct FlSliced *patches; // of its ink, for the refinement of transport; NULL: not needed
     FlMedium medium;
+    FlMarks marks;
     float granulation; // as of fl_granulate()
     FlFrontStyle front;
     FlWashStyle wash;

@@ -116,6 +116,7 @@ static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
                                   .halved = enlarges(cache, settings, path),
                                   .enlarged = factor,
                                   .medium = style->medium,
+                                  .marks = style->marks,
                                   .granulation = style->granulation,
                                   .front = style->front,
                                   .wash = style->wash};

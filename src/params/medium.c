@@ -8,6 +8,12 @@ const char *fl_medium_word(FlMedium medium)
     return words[medium];
 }
 
+const char *fl_marks_word(FlMarks marks)
+{
+    static const char *const words[] = {"auto", "off", "charcoal", "pastel", "brush"};
+    return words[marks];
+}
+
 FlMedium fl_medium_of_word(const char *word)
 {
     int medium = FL_MEDIUM_AUTO;

@@ -1,4 +1,4 @@
-/* Media: the rule by which paint composites over the layers below. */
+/* Media: the rule by which paint composites over the layers below, and the marks of dry ones. */
 #ifndef FLUIDY_PARAMS_MEDIUM_H
 #define FLUIDY_PARAMS_MEDIUM_H
 
@@ -12,6 +12,20 @@ typedef enum FlMedium {
 
 /** The words, in the enum's order: the form of fl_text_choice(). */
 #define FL_MEDIUM_WORDS "auto|transparent|opaque|body"
+
+/** The marks of a dry medium. */
+typedef enum FlMarks {
+    FL_MARKS_AUTO, // not set: the style's, which are off
+    FL_MARKS_OFF,
+    FL_MARKS_CHARCOAL,
+    FL_MARKS_PASTEL,
+    FL_MARKS_BRUSH, // nearly dry
+} FlMarks;
+
+#define FL_MARKS_WORDS "auto|off|charcoal|pastel|brush"
+
+/** The word for marks, static. */
+const char *fl_marks_word(FlMarks marks);
 
 /** A medium's word, static. */
 const char *fl_medium_word(FlMedium medium);

@@ -133,6 +133,7 @@ static bool set_preset(FlRegionSettings *settings, const char *value, GError **e
     settings->wash = ours ? plain.wash : 0;
     settings->hue = ours ? plain.hue : 0;
     settings->load = settings->pigments = NAN;
+    settings->marks = ours ? plain.marks : FL_MARKS_OFF;
     settings->front = ours ? plain.front : 0;
     settings->stain = ours ? plain.stain : 0;
     settings->line = ours ? plain.line : FL_LINE_PLAIN;

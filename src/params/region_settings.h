@@ -79,8 +79,10 @@ typedef struct FlRegionSettings {
     double hue, passes, tide, pool, blooms;
     double load, pigments; // older words: wash / 5 and hue / 72; NAN: not said
     FlPalette palette;
-    double front; // fronts on the paper ahead of what moves, 0..2
-    double stain; // stains behind the front, 0..1
+    FlMarks marks;      // FL_MARKS_AUTO: the style's
+    double marks_angle; // direction of the strokes, degrees; 90: down
+    double front;       // fronts on the paper ahead of what moves, 0..2
+    double stain;       // stains behind the front, 0..1
     FlEdges edges;
     FlLine line;   // of a region that is not painted
     int line_boil; // frames until it is drawn anew; 0: never
@@ -98,7 +100,7 @@ void fl_region_settings_clear(FlRegionSettings *settings);
 /**
  * Sets one thing from text: an option of FL_SCOPE_REGION; "scale" is read as style-scale. A preset
  * also sets the motion: the presets of the papers use the motion of masks only, and paint as the
- * synthesis makes it, without granulation, wash, hue and drawn lines. The engine LazyFluids
+ * synthesis makes it, without granulation, wash, hue, marks and drawn lines. The engine LazyFluids
  * brings the parameters of the preset fluid, unless a preset chose the engine.
  *
  * A relative path of a style is taken from `folder`; NULL: the working directory.

@@ -169,6 +169,7 @@ static FlStyle *new_like(const FlStyle *style)
                      .scale = 1,
                      .cut_out = style->cut_out,
                      .medium = style->medium,
+                     .marks = style->marks,
                      .granulation = style->granulation,
                      .front = style->front,
                      .wash = style->wash,

@@ -9,7 +9,7 @@
 /* Sections of style.ini. */
 typedef enum Section { NOWHERE, STYLE, FRONT, WASH, OTHER } Section;
 
-typedef enum KeyType { TEXT, NUMBER, COLOUR, MEDIUM } KeyType;
+typedef enum KeyType { TEXT, NUMBER, COLOUR, MEDIUM, MARKS } KeyType;
 
 /* The keys: where the value goes in FlStyle, its range, and the guess that it replaces. */
 static const struct Key {
@@ -28,6 +28,7 @@ static const struct Key {
     {"border", NUMBER, offsetof(FlStyle, border_px), 0.5, 1000, FL_GUESS_BORDER},
     {"scale", NUMBER, offsetof(FlStyle, scale), 0.01, 100},
     {"medium", MEDIUM, offsetof(FlStyle, medium)},
+    {"marks", MARKS, offsetof(FlStyle, marks)},
     {"granulation", NUMBER, offsetof(FlStyle, granulation), -1, 1},
     {"made-by", TEXT, offsetof(FlStyle, made_by)},
     {"missing-orientations", TEXT, offsetof(FlStyle, missing_orientations)},
@@ -76,26 +77,35 @@ static bool read_number(const char *text, const struct Key *key, float *field, G
     return true;
 }
 
-static bool read_medium(const char *text, FlMedium *medium, GError **error)
+/* The index of a word among `form`, with | between. */
+static bool read_word(const char *name, const char *text, const char *form, int *choice,
+                      GError **error)
 {
-    int choice = 0;
-    if (fl_text_choice(text, FL_MEDIUM_WORDS, &choice)) {
-        *medium = (FlMedium)choice;
+    if (fl_text_choice(text, form, choice))
         return true;
-    }
-    g_auto(GStrv) words = g_strsplit(FL_MEDIUM_WORDS, "|", -1);
+    g_auto(GStrv) words = g_strsplit(form, "|", -1);
     g_autofree char *tail = fl_did_you_mean(text, (const char *const *)words);
-    return wrong(error, "medium = %s: expected auto, transparent, opaque or body%s", text, tail);
+    g_autofree char *list = g_strjoinv(", ", words);
+    return wrong(error, "%s = %s: expected one of %s%s", name, text, list, tail);
 }
 
 static bool read_value(FlStyle *style, const struct Key *key, const char *value, GError **error)
 {
     void *field = (char *)style + key->offset;
+    int choice = 0;
     switch (key->type) {
     case NUMBER:
         return read_number(value, key, field, error);
     case MEDIUM:
-        return read_medium(value, field, error);
+        if (!read_word(key->name, value, FL_MEDIUM_WORDS, &choice, error))
+            return false;
+        style->medium = (FlMedium)choice;
+        return true;
+    case MARKS:
+        if (!read_word(key->name, value, FL_MARKS_WORDS, &choice, error))
+            return false;
+        style->marks = (FlMarks)choice;
+        return true;
     case COLOUR:
         return fl_text_colour(value, field) ||
                wrong(error, "%s = %s: expected a colour such as #f4efe6", key->name, value);
@@ -200,6 +210,8 @@ char *fl_manifest_text(const FlStyle *style)
                                g_ascii_formatd(number, sizeof number, "%.4g", style->granulation));
     if (style->medium != FL_MEDIUM_AUTO)
         g_string_append_printf(text, "medium = %s\n", fl_medium_word(style->medium));
+    if (style->marks != FL_MARKS_AUTO)
+        g_string_append_printf(text, "marks = %s\n", fl_marks_word(style->marks));
     if (!(style->guessed & FL_GUESS_PAPER))
         g_string_append_printf(text, "paper = #%02x%02x%02x\n", style->paper[0], style->paper[1],
                                style->paper[2]);

@@ -53,6 +53,7 @@ typedef struct FlStyle {
     float scale;       // suggested px of the target per px of the style, > 0
     uint8_t paper[3];  // sRGB of the bare paper
     FlMedium medium;   // FL_MEDIUM_AUTO: not given
+    FlMarks marks;     // FL_MARKS_AUTO: none
     float granulation; // of its paint on paper: see fl_granulate()
     FlFrontStyle front;
     FlWashStyle wash;

@@ -86,7 +86,13 @@ static void read_recipe(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_string(lines, "licence", &recipe->licence);
     fl_keylines_string(lines, "medium", &recipe->medium);
     fl_keylines_string(lines, "missing-orientations", &recipe->missing);
-    int medium = 0;
+    g_autofree char *word = g_strdup(fl_marks_word(FL_MARKS_AUTO));
+    int medium = 0, marks = 0;
+    fl_keylines_string(lines, "marks", &word);
+    if (!fl_text_choice(word, FL_MARKS_WORDS, &marks))
+        fl_keylines_complain(lines, "marks",
+                             "marks: “%s”: expected auto, off, charcoal, pastel or brush", word);
+    recipe->marks = (FlMarks)marks;
     if (!fl_text_choice(recipe->medium, FL_MEDIUM_WORDS, &medium))
         fl_keylines_complain(lines, "medium",
                              "medium: “%s”: expected auto, transparent, opaque or body",

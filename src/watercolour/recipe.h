@@ -94,6 +94,7 @@ typedef struct FlRecipe {
     float mask_blur;                   // radius over which the thickness is averaged, px
     FlFrontStyle front;
     FlWashStyle wash;
+    FlMarks marks;
     FlPaper paper;
     FlFlow flow;
     FlDust dust;

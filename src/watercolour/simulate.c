@@ -74,6 +74,7 @@ static FlStyle *new_style(const FlRecipe *recipe, int size, const char *recipe_p
         .front = recipe->front,
         .wash = recipe->wash,
         .medium = fl_medium_of_word(recipe->medium),
+        .marks = recipe->marks,
     };
     memcpy(style->paper, recipe->paper.colour, sizeof style->paper);
     if (!(style->rgb = fl_alloc(pixels, 3, "the frames of a style", error)) ||
