@@ -33,6 +33,7 @@ static Scene *scene_new(void)
     scene->sheet = (FlWetSheet){.page = page,
                                 .width = SIDE,
                                 .height = SIDE,
+                                .cell_px = 1,
                                 .px = 1,
                                 .stain_time = 7,
                                 .fibres = {.seed = 5}};
@@ -64,7 +65,7 @@ static void scene_free(Scene *scene)
 static void mark(Scene *scene, float x0, float x1, float grown)
 {
     g_auto(FlMovingEdge) edge = {0};
-    FlEdgeBefore before = {0};
+    g_auto(FlMovingEdge) before = {0};
     FlWetShape was = scene->shape;
     draw_disk(x0, RADIUS, scene->before);
     draw_disk(x1, RADIUS + grown, scene->now);
@@ -73,7 +74,8 @@ static void mark(Scene *scene, float x0, float x1, float grown)
         scene->motion[2 * p] = x1 - x0;
     g_assert_true(fl_distance(scene->now, SIDE, SIDE, scene->distance, NULL));
     was.now = scene->before;
-    g_assert_true(fl_edge_before_look(&before, &was, NULL));
+    g_assert_true(fl_moving_edge_look(&before, &was, NULL));
+    before.n = 0; // it has no motion of its own
     scene->shape.distance_before = before.distance;
     g_assert_true(fl_distance(scene->ahead, SIDE, SIDE, scene->beyond, NULL));
     for (int p = 0; p < PIXELS; p++)
@@ -85,7 +87,6 @@ static void mark(Scene *scene, float x0, float x1, float grown)
     g_assert_true(fl_marks_add_front(&scene->shape, &edge, &around, &scene->dials, &scene->sheet,
                                      scene->fronts, NULL));
     fl_marks_add_stain(&scene->shape, &edge, &around, &scene->dials, scene->stains);
-    fl_edge_before_clear(&before);
 }
 
 /* The sum of the fronts outside the disk, right of it less left of it, and of both. */
@@ -145,6 +146,27 @@ static void test_vanish(void)
     scene_free(scene);
 }
 
+/* A front is left where its disk slides on, and is taken away where the disk is suddenly far. */
+static void test_jump(void)
+{
+    for (int jumps = 0; jumps < 2; jumps++) {
+        Scene *scene = scene_new();
+        mark(scene, 60, 66, 0);
+        g_autoptr(GArray) fronts = g_array_ref(scene->fronts), lost = NULL;
+        g_auto(FlMovingEdge) edge = {0};
+        lost = g_array_new(FALSE, FALSE, sizeof(FlStainMark));
+        draw_disk(jumps ? 160 : 72, jumps ? 10 : RADIUS, scene->now);
+        memset(scene->motion, 0, sizeof scene->motion);
+        g_assert_true(fl_moving_edge_look(&edge, &scene->shape, NULL));
+        fl_marks_lose_fronts(&scene->shape, &edge, fronts, lost);
+        if (jumps)
+            g_assert_cmpuint(lost->len, >, fronts->len / 2);
+        else
+            g_assert_cmpuint(lost->len, ==, 0);
+        scene_free(scene);
+    }
+}
+
 static void test_other_paint(void)
 {
     Scene *scene = scene_new();
@@ -175,7 +197,7 @@ static void test_dries(void)
     Scene *scene = scene_new();
     mark(scene, 80, 86, 0);
     fl_wet_sheet_stain(&scene->sheet, &plain, scene->stains);
-    fl_wet_sheet_wet(&scene->sheet, 1, scene->fronts);
+    fl_wet_sheet_wet(&scene->sheet, &plain, 1, scene->fronts);
     double last = darkness(scene);
     g_assert_cmpfloat(last, >, 1000);
     for (int k = 0; k < 40; k++) {
@@ -208,6 +230,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/a-front-runs-ahead-and-a-stain-stays-behind", test_ahead);
     g_test_add_func("/wet/what-rests-marks-nothing", test_rest);
     g_test_add_func("/wet/what-vanishes-leaves-less-than-what-recedes", test_vanish);
+    g_test_add_func("/wet/fronts-go-with-a-shape-that-jumps", test_jump);
     g_test_add_func("/wet/paint-on-other-paint-marks-nothing", test_other_paint);
     g_test_add_func("/wet/marks-fade-until-none-is-left", test_dries);
     g_test_add_func("/wet/marks-and-grain-move-with-the-paper", test_moved);

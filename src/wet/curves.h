@@ -14,12 +14,10 @@ static inline float fl_ease(float from, float to, float x)
     return t * t * (3 - 2 * t);
 }
 
-/** exp(-x) to 1e-4 of its value for x >= 0; 0 where that is below 1e-9. */
+/** exp(-x) to 1e-4 of its value for x >= 0; below 1e-9 it stays so. */
 static inline float fl_fall(float x)
 {
-    const float octaves = x * 1.44269504f;
-    if (!(octaves < 30))
-        return 0;
+    const float octaves = MIN(x * 1.44269504f, 30);
     const int whole = (int)octaves;
     const float t = (octaves - (float)whole) * 0.693147181f;
     const uint32_t bits = (uint32_t)(127 - whole) << 23; // 2 to the power of -whole

@@ -5,6 +5,8 @@
 #include "wet/curves.h"
 #include <math.h>
 
+#define THIN 0.65f // density of a front, as a share of that of the paint that it runs from
+
 /** The front of one region, planes of its rect. */
 typedef struct Front {
     const FlWetShape *shape;
@@ -59,36 +61,43 @@ static bool make_planes(Front *front, GError **error)
            fl_blur(front->strength, shape->rect.width, shape->rect.height, 2 * shape->px, error);
 }
 
-/** The front at a pixel that lies `beyond` the masks of the frames to come. */
-static float density_at(const Front *front, const FlWetSheet *sheet, size_t p, int32_t at,
-                        float beyond)
+/** A shape that passes leaves no fringe on its way, but for what it pushes ahead. */
+static float passing_by(const FlWetShape *shape, const FlEdgePoint *point)
+{
+    const float along = (point->u * point->ny - point->v * point->nx) / shape->frames;
+    return fl_bell(along / (7 * shape->px));
+}
+
+/** The front at a cell that lies `beyond` the masks of the frames to come. Returns: false if it
+ * does not reach so far. */
+static bool find_mark(const Front *front, const FlWetSheet *sheet, size_t p, float beyond,
+                      FlFrontMark *mark)
 {
     const FlFrontStyle *style = front->dials->style;
     const FlEdgePoint *point = &front->edge->point[front->edge->nearest[p]];
     const float px = front->shape->px, f = front->width[p], depth = front->edge->distance[p];
     const float inset = MIN(2.5f * px, 0.45f * point->half_width), ahead = inset - depth;
-    if (f <= 0.5f * px || depth >= 14 * px || ahead > 4.2f * f + 4 * px)
-        return 0;
-    const float x = (float)(at % sheet->page.width) - sheet->fibres.x;
-    const float y = (float)(at / sheet->page.width) - sheet->fibres.y;
+    if (f <= 0.5f * px || depth >= 14 * px || ahead > 4.2f * f + 6 * px)
+        return false;
+    const float x = (float)(mark->at % sheet->page.width) - sheet->fibres.x;
+    const float y = (float)(mark->at / sheet->page.width) - sheet->fibres.y;
     const float run = fl_fibres_run(&sheet->fibres, x / px, y / px, point->nx, point->ny);
-    const FlPaperGrains grains = fl_wet_sheet_grain(sheet, at);
-    const float hollow = (float)grains.hollow / 255, spot = (float)grains.spot / 255;
     const float fingers = style->fingers * fl_ease(1.5f * px, 7 * px, f);
     const float reach =
         1.25f * f * (1 - fingers + 2.2f * fingers * run * sqrtf(sqrtf(run))) - ahead + 2 * px;
-    const float soft = MAX(style->soft * f, 1.1f * px);
-    const float dense = style->base + (1 - style->base) * fl_fall(MAX(ahead, 0) / (0.45f * f));
-    const float tip =
-        style->line * fl_bell((reach - 0.6f * soft) / (1.3f * px)) * fl_ease(0.3f, 2, f / px);
-    const float wash = fl_ease(0, soft, reach);
-    const float grain = 0.86f + 0.5f * style->granulation * (hollow - 0.5f) + 0.2f * spot;
-    float density = MIN(wash * dense * grain + tip * wash * (1 - dense), 1);
     const float over = front->dials->overrun * px * (0.4f + 1.2f * run) *
-                       MIN(1, point->half_width / (10 * px)) * fl_ease(1.5f * px, 9 * px, f);
-    density *= fl_ease(0.5f * px, 2.5f * px, f) * front->strength[p];
-    density *= 1 - fl_ease(0.35f * over, over + 0.8f * px, beyond - inset);
-    return density * (1 - fl_ease(7 * px, 14 * px, depth));
+                       MIN(1, point->half_width / (10 * px)) * fl_ease(1.5f * px, 9 * px, f) *
+                       passing_by(front->shape, point);
+    const float path = (over + 0.8f * px + inset - beyond) / (0.65f * over + 0.8f * px);
+    const float dense =
+        THIN * (style->base + (1 - style->base) * fl_fall(MAX(ahead, 0) / (0.45f * f)));
+    const float strength = fl_ease(0.5f * px, 2.5f * px, f) * front->strength[p] *
+                           (1 - fl_ease(7 * px, 14 * px, depth));
+    mark->edge = CLAMP(MIN(reach / MAX(style->soft * f, 1.1f * px), path), -2, 3);
+    mark->density = strength * dense;
+    mark->line = strength * style->line * (1 - dense) * fl_ease(0.3f, 2, f / px);
+    memcpy(mark->ink, point->ink, sizeof mark->ink);
+    return mark->density > 0.004f && mark->edge > -2;
 }
 
 static void add_marks(const Front *front, const FlWetAround *around, const FlWetSheet *sheet,
@@ -98,12 +107,9 @@ static void add_marks(const Front *front, const FlWetAround *around, const FlWet
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
             const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
-            if (!(around->touches[p] & 1) || front->edge->nearest[p] < 0)
-                continue;
-            const int32_t at = (rect.y + y) * page.width + rect.x + x;
-            FlFrontMark mark = {at, density_at(front, sheet, p, at, around->beyond[p]), {0}};
-            memcpy(mark.ink, front->edge->point[front->edge->nearest[p]].ink, sizeof mark.ink);
-            if (mark.density > 0.004f)
+            FlFrontMark mark = {.at = (rect.y + y) * page.width + rect.x + x};
+            if (around->touches[p] & 1 && front->edge->nearest[p] >= 0 &&
+                find_mark(front, sheet, p, around->beyond[p], &mark))
                 g_array_append_val(marks, mark);
         }
 }

@@ -34,13 +34,12 @@ static int frame_ahead(const FlWet *wet, int frame, int ahead)
 /** Planes of a region's rectangle. */
 typedef struct Planes {
     FlRect rect;
-    uint8_t *before, *now, *ahead, *touches;
+    uint8_t *now, *ahead, *touches;
     float *distance_before, *beyond, *motion;
 } Planes;
 
 static void planes_clear(Planes *planes)
 {
-    free(planes->before);
     free(planes->now);
     free(planes->ahead);
     free(planes->touches);
@@ -56,8 +55,7 @@ static bool planes_init(Planes *planes, FlRect rect, GError **error)
     const size_t n = fl_rect_pixels(rect);
     const char *what = "the edge of a region";
     planes->rect = rect;
-    return (planes->before = fl_alloc_unset(n, 1, what, error)) &&
-           (planes->now = fl_alloc_unset(n, 1, what, error)) &&
+    return (planes->now = fl_alloc_unset(n, 1, what, error)) &&
            (planes->ahead = fl_alloc_unset(n, 1, what, error)) &&
            (planes->touches = fl_alloc_unset(n, 1, what, error)) &&
            (planes->distance_before = fl_alloc_unset(n, sizeof(float), what, error)) &&
@@ -117,23 +115,20 @@ static void find_touches(const FlWet *wet, int region, Planes *planes)
         }
 }
 
-/** The share of the smaller of both masks that lies in the other. */
+/** The share of the smaller of both shapes that lies in the other. */
 static float overlap_of(const Planes *planes)
 {
-    const FlRect rect = planes->rect;
-    int64_t both = 0, before = 0, now = 0;
-    for (int y = 0; y < rect.height; y++) {
-        const uint8_t *a = planes->before + (size_t)y * (size_t)rect.width;
-        const uint8_t *b = planes->now + (size_t)y * (size_t)rect.width;
-        int32_t shared = 0, was = 0, is = 0; // of a row
-        for (int x = 0; x < rect.width; x++)
-            was += a[x], is += b[x], shared += MIN(a[x], b[x]);
-        both += shared, before += was, now += is;
+    const size_t n = fl_rect_pixels(planes->rect);
+    int both = 0, before = 0, now = 0;
+    for (size_t p = 0; p < n; p++) {
+        const bool was = planes->distance_before[p] > 0, is = planes->now[p] >= FL_INSIDE;
+        before += was, now += is, both += was && is;
     }
     return (float)both / (float)MAX(MIN(before, now), 1);
 }
 
-/** The distances in a frame that was not looked at, or only in an earlier run. */
+/** The contour in a frame that was not looked at, or only in an earlier run, which kept what its
+ * points were. */
 static bool find_first(const FlWet *wet, FlMarker *marker, int frame, GError **error)
 {
     const int earlier = before_that(wet, marker->plan, frame);
@@ -142,10 +137,21 @@ static bool find_first(const FlWet *wet, FlMarker *marker, int frame, GError **e
                             ? marker->before.rect
                             : marked_part(wet, marker->plan, earlier < 0 ? frame : earlier, frame);
     g_autofree uint8_t *mask = fl_alloc_unset(fl_rect_pixels(rect), 1, "a mask", error);
+    g_auto(FlMovingEdge) kept = marker->before;
     const FlWetShape shape = {
         .rect = rect, .page = wet->sheet.page, .px = wet->sheet.px, .frames = 1, .now = mask};
-    return mask && fl_wet_get_mask(wet, marker->plan->region, frame, rect, mask, error) &&
-           fl_edge_before_look(&marker->before, &shape, error);
+    marker->before = (FlMovingEdge){0};
+    if (!mask || !fl_wet_get_mask(wet, marker->plan->region, frame, rect, mask, error) ||
+        !fl_moving_edge_look(&marker->before, &shape, error))
+        return false;
+    if (kept.n != marker->before.n)
+        marker->before.n = 0; // nothing is known of it
+    for (int i = 0; i < marker->before.n; i++) {
+        const FlEdgePoint place = marker->before.point[i];
+        marker->before.point[i] = kept.point[i];
+        marker->before.point[i].x = place.x, marker->before.point[i].y = place.y;
+    }
+    return true;
 }
 
 /** Steps of the distances of find_beyond(): to a neighbour, and across. */
@@ -186,7 +192,7 @@ static bool find_before(const FlWet *wet, FlMarker *marker, int frame, Planes *p
                         GError **error)
 {
     const FlRect rect = planes->rect;
-    FlEdgeBefore *before = &marker->before;
+    const FlMovingEdge *before = &marker->before;
     for (size_t p = 0; p < fl_rect_pixels(rect); p++)
         planes->distance_before[p] = -MARGIN_PX * wet->sheet.px;
     if (!before->distance && !find_first(wet, marker, frame, error))
@@ -201,8 +207,7 @@ static bool read_planes(const FlWetStep *step, FlMarker *marker, int before, int
     const FlWet *wet = step->wet;
     const int region = marker->plan->region;
     const FlRect rect = planes->rect;
-    if (!fl_wet_get_mask(wet, region, before, rect, planes->before, error) ||
-        !fl_wet_get_mask(wet, region, now, rect, planes->now, error) ||
+    if (!fl_wet_get_mask(wet, region, now, rect, planes->now, error) ||
         !read_ahead(wet, marker->plan, now, planes, error) ||
         !find_before(wet, marker, before, planes, error))
         return false;
@@ -212,9 +217,12 @@ static bool read_planes(const FlWetStep *step, FlMarker *marker, int before, int
            fl_wet_get_motion(wet, marker, before, now, rect, planes->motion, error);
 }
 
-static void forget(FlMarker *marker)
+/** A region that is gone takes its fronts with it. */
+static void forget(const FlWet *wet, FlMarker *marker)
 {
-    fl_edge_before_clear(&marker->before);
+    const FlWetShape gone = {.page = wet->sheet.page};
+    fl_marks_lose_fronts(&gone, &(FlMovingEdge){0}, marker->fronts, marker->stains);
+    fl_moving_edge_clear(&marker->before);
     g_array_set_size(marker->fronts, 0);
     marker->rests = false;
 }
@@ -247,12 +255,16 @@ static bool mark_moving(const FlWetStep *step, FlMarker *marker, int before, int
         return false;
     const float known = (float)edge.known / (float)MAX(edge.n, 1);
     marker->partner = MAX(known, fl_ease(0.02f, 0.2f, shape.overlap));
+    fl_marks_lose_fronts(&shape, &edge, marker->fronts, marker->stains);
     g_array_set_size(marker->fronts, 0);
     fl_marks_add_stain(&shape, &edge, &around, &marker->dials, marker->stains);
     marker->rests = !moves && edge.fastest < 0.02f * wet->sheet.px;
-    return fl_edge_before_take(&marker->before, &shape, &edge, error) &&
-           (marker->dials.front <= 0 || fl_marks_add_front(&shape, &edge, &around, &marker->dials,
-                                                           &wet->sheet, marker->fronts, error));
+    const bool marked =
+        marker->dials.front <= 0 || fl_marks_add_front(&shape, &edge, &around, &marker->dials,
+                                                       &wet->sheet, marker->fronts, error);
+    const FlMovingEdge before_edge = marker->before;
+    marker->before = edge, edge = before_edge;
+    return marked;
 }
 
 /** The work of fl_schedule_run(). */
@@ -265,13 +277,10 @@ bool fl_wet_mark_one(void *data, int m, int thread, GError **error)
     const int now = fl_wet_shown_by(plan, step->frame), before = before_that(wet, plan, now);
     g_array_set_size(marker->stains, 0);
     marker->partner = 1;
-    if (!fl_mask_store_has(wet->plan->masks, plan->region, now)) {
-        forget(marker);
-        return true;
-    }
-    if (before < 0 || !fl_mask_store_has(wet->plan->masks, plan->region, before)) {
-        forget(marker);
-        marker->partner = before < 0;
+    const bool shown = fl_mask_store_has(wet->plan->masks, plan->region, now);
+    if (!shown || before < 0 || !fl_mask_store_has(wet->plan->masks, plan->region, before)) {
+        forget(wet, marker);
+        marker->partner = !shown || before < 0;
         return true;
     }
     if (now != step->frame) // its last picture is shown again, and wets what it wetted

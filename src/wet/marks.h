@@ -30,4 +30,9 @@ bool fl_marks_add_front(const FlWetShape *shape, const FlMovingEdge *edge,
 void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
                         const FlWetAround *around, const FlWetDials *dials, GArray *marks);
 
+/** Adds marks that take the fronts of the frame before from the paper where the shape has jumped
+ * away: what vanishes leaves no outline. */
+void fl_marks_lose_fronts(const FlWetShape *shape, const FlMovingEdge *edge, const GArray *fronts,
+                          GArray *marks);
+
 #endif

@@ -159,11 +159,10 @@ static void find_distances(const FlWetShape *shape, FlMovingEdge *edge)
         }
 }
 
-/** The contour at rest, and all distances. */
-static bool find_edge(FlMovingEdge *edge, const FlWetShape *shape, GError **error)
+bool fl_moving_edge_look(FlMovingEdge *edge, const FlWetShape *shape, GError **error)
 {
     const size_t n = fl_rect_pixels(shape->rect);
-    *edge = (FlMovingEdge){0};
+    *edge = (FlMovingEdge){.rect = shape->rect};
     if (!(edge->nearest = fl_alloc_unset(n, sizeof *edge->nearest, "an edge", error)) ||
         !(edge->distance = fl_alloc_unset(n, sizeof *edge->distance, "an edge", error)))
         return false;
@@ -194,14 +193,13 @@ static bool find_motion(const FlWetShape *shape, FlEdgePoint *point)
         if (shape->now[p] < FL_INSIDE || isnan(shape->motion[2 * p]))
             continue;
         point->u = shape->motion[2 * p], point->v = shape->motion[2 * p + 1];
-        point->known = true;
         return true;
     }
     return false;
 }
 
 /** The normal part of the motion, and growth that the motion does not explain. */
-static void find_speed(const FlWetShape *shape, FlEdgePoint *point)
+static void find_speed(const FlWetShape *shape, bool known, FlEdgePoint *point)
 {
     const float page = FL_WET_PAGE_PX * shape->px, most = 0.05f * page * shape->frames;
     const float before = fl_wet_plane_at(shape->distance_before, shape->rect, point->x - point->u,
@@ -209,7 +207,7 @@ static void find_speed(const FlWetShape *shape, FlEdgePoint *point)
     point->u -= shape->ground_x, point->v -= shape->ground_y;
     const float moved = point->u * point->nx + point->v * point->ny;
     const float grown = CLAMP(point->depth - before, -most, most) *
-                        (point->known ? 1 : fl_ease(0.02f, 0.2f, shape->overlap));
+                        (known ? 1 : fl_ease(0.02f, 0.2f, shape->overlap));
     const float speed = (moved + grown) / shape->frames;
     point->speed = CLAMP(speed, -0.12f * page, 0.12f * page);
 }
@@ -225,12 +223,26 @@ static void find_width(const FlWetShape *shape, const float *distance, FlEdgePoi
     point->half_width = depth;
 }
 
-bool fl_wet_ink_at(const FlWetShape *shape, float x, float y, float ink[3])
+/** The share of its paint that the paper keeps: less of thin and fast strokes, none of shapes that
+ * shrink without a motion that explains it, more of those that rested. */
+static void find_kept(const FlWetShape *shape, float speed_before, FlEdgePoint *point)
+{
+    const float px = shape->px, width = MAX(point->half_width, 2 * px);
+    const float moved = sqrtf(point->u * point->u + point->v * point->v);
+    const float speed = moved / shape->frames, shrunk = MAX(-point->speed, 0) * shape->frames;
+    const float contact = 1 - fl_fall(MIN(6, 2 * width / MAX(speed, px)) / 1.5f);
+    const float rested = 0.8f + 0.4f * fl_bell(speed_before / px);
+    point->kept = fl_bell(speed / (2.2f * width)) * contact * rested *
+                  (1 - fl_ease(1.3f, 2, shrunk / (moved + 3 * px)));
+}
+
+/** The absorbance of the region's paint, laid at a place in rect in the frame before. Returns:
+ * false if it was hidden. */
+static bool ink_at(const FlWetShape *shape, float x, float y, float ink[3])
 {
     const FlLaid *laid = shape->laid;
     const int px = shape->rect.x + (int)floorf(x + 0.5f),
               py = shape->rect.y + (int)floorf(y + 0.5f);
-    memcpy(ink, shape->fill, sizeof shape->fill);
     if (!laid || px < 0 || py < 0 || px >= laid->width || py >= laid->height)
         return false;
     const size_t cell = (size_t)py * (size_t)laid->width + (size_t)px;
@@ -250,7 +262,7 @@ static void find_ink(const FlWetShape *shape, FlEdgePoint *point)
         const float x = point->x - depth * point->nx - point->u - shape->ground_x;
         const float y = point->y - depth * point->ny - point->v - shape->ground_y;
         float ink[3];
-        if (!fl_wet_ink_at(shape, x, y, ink))
+        if (!ink_at(shape, x, y, ink))
             continue;
         for (int c = 0; c < 3; c++)
             sum[c] += ink[c];
@@ -305,69 +317,50 @@ static void smooth(const FlWetShape *shape, FlMovingEdge *edge, const Links *lin
     g_free(next);
 }
 
-/** Smooths the speed in time, along the motion. */
-static void follow(const FlWetShape *shape, const FlEdgeBefore *before, FlEdgePoint *point)
+/** The point of the frame before that is nearest to where a point comes from; NULL: not known. */
+static const FlEdgePoint *point_before(const FlWetShape *shape, const FlMovingEdge *before,
+                                       const FlEdgePoint *point)
 {
-    float speed = 0;
     const FlRect was = before->rect;
     const float x = point->x + (float)(shape->rect.x - was.x) - point->u - shape->ground_x;
     const float y = point->y + (float)(shape->rect.y - was.y) - point->v - shape->ground_y;
-    if (before->speed)
-        speed = fl_wet_plane_at(before->speed, was, x, y);
+    if (before->n == 0)
+        return NULL;
+    const size_t column = (size_t)CLAMP(x + 0.5f, 0, (float)was.width - 1);
+    const size_t row = (size_t)CLAMP(y + 0.5f, 0, (float)was.height - 1);
+    const int32_t nearest = before->nearest[row * (size_t)was.width + column];
+    return nearest >= 0 ? &before->point[nearest] : NULL;
+}
+
+/** The motion is smoothed in time; strength and ink go over from the frame before. */
+static void find_point(const FlWetShape *shape, const FlMovingEdge *before, FlMovingEdge *edge,
+                       FlEdgePoint *point)
+{
+    const bool known = find_motion(shape, point);
+    edge->known += known;
+    find_speed(shape, known, point);
+    find_width(shape, edge->distance, point);
+    find_ink(shape, point);
+    const FlEdgePoint *was = point_before(shape, before, point);
+    const float speed = was ? was->speed : 0;
+    find_kept(shape, speed, point);
+    point->kept_before = was ? was->kept : point->kept;
+    memcpy(point->ink_before, was ? was->ink : point->ink, sizeof point->ink);
     point->speed = 0.55f * point->speed + 0.45f * speed;
-    point->speed_before = speed;
 }
 
-bool fl_edge_before_take(FlEdgeBefore *before, const FlWetShape *shape, const FlMovingEdge *edge,
+bool fl_moving_edge_init(FlMovingEdge *edge, const FlWetShape *shape, const FlMovingEdge *before,
                          GError **error)
 {
-    const size_t n = fl_rect_pixels(shape->rect);
-    fl_edge_before_clear(before);
-    before->rect = shape->rect;
-    if (!(before->distance = fl_alloc_unset(n, sizeof(float), "an edge", error)) ||
-        !(before->speed = fl_alloc_unset(n, sizeof(float), "an edge", error)))
-        return false;
-    memcpy(before->distance, edge->distance, n * sizeof(float));
-    for (size_t p = 0; p < n; p++)
-        before->speed[p] = edge->nearest[p] >= 0 ? edge->point[edge->nearest[p]].speed : 0;
-    return true;
-}
-
-static void find_all(const FlWetShape *shape, FlMovingEdge *edge, const FlEdgeBefore *before)
-{
-    for (int i = 0; i < edge->n; i++) {
-        FlEdgePoint *point = &edge->point[i];
-        edge->known += find_motion(shape, point);
-        find_speed(shape, point);
-        find_width(shape, edge->distance, point);
-        find_ink(shape, point);
-        follow(shape, before, point);
-    }
-}
-
-bool fl_moving_edge_init(FlMovingEdge *edge, const FlWetShape *shape, const FlEdgeBefore *before,
-                         GError **error)
-{
-    if (!find_edge(edge, shape, error))
+    if (!fl_moving_edge_look(edge, shape, error))
         return false;
     g_autofree Links *links = g_new0(Links, MAX(edge->n, 1));
-    find_all(shape, edge, before);
+    for (int i = 0; i < edge->n; i++)
+        find_point(shape, before, edge, &edge->point[i]);
     link_points(shape->rect, edge, links);
     smooth(shape, edge, links);
     for (int i = 0; i < edge->n; i++)
         edge->fastest = MAX(edge->fastest, fabsf(edge->point[i].speed));
-    return true;
-}
-
-bool fl_edge_before_look(FlEdgeBefore *before, const FlWetShape *shape, GError **error)
-{
-    g_auto(FlMovingEdge) edge = {0};
-    free(before->distance);
-    before->distance = NULL;
-    before->rect = shape->rect;
-    if (!find_edge(&edge, shape, error))
-        return false;
-    before->distance = g_steal_pointer(&edge.distance);
     return true;
 }
 
@@ -377,11 +370,4 @@ void fl_moving_edge_clear(FlMovingEdge *edge)
     free(edge->nearest);
     free(edge->distance);
     *edge = (FlMovingEdge){0};
-}
-
-void fl_edge_before_clear(FlEdgeBefore *before)
-{
-    free(before->distance);
-    free(before->speed);
-    *before = (FlEdgeBefore){0};
 }

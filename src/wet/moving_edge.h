@@ -25,27 +25,27 @@ typedef struct FlWetShape {
     float fill[3]; // absorbance of its paint, where that is not known
 } FlWetShape;
 
-/** A point of the contour; neighbours have similar values. */
+/** A point of the contour; neighbours have similar values. All are floats. */
 typedef struct FlEdgePoint {
-    float x, y;         // a pixel of rect, cells
-    float depth;        // of its middle inside the edge
-    bool known;         // u and v are the drawing's own
-    float nx, ny;       // outward normal
-    float u, v;         // motion since the frame before against the paper, cells
-    float speed;        // of the contour along its normal against the paper, cells a frame
-    float speed_before; // a frame earlier
-    float half_width;   // of the shape, cells
-    float ink[3];       // absorbance of the paint inside
+    float x, y;                  // a pixel of rect, cells
+    float depth;                 // of its middle inside the edge
+    float nx, ny;                // outward normal
+    float u, v;                  // motion since the frame before against the paper, cells
+    float speed;                 // of the contour along its normal against the paper, cells a frame
+    float half_width;            // of the shape, cells
+    float kept, kept_before;     // share of its paint that the paper keeps, and a frame earlier
+    float ink[3], ink_before[3]; // absorbance of the paint inside
 } FlEdgePoint;
 
 /** Deeper inside than this no pixel has a nearest point; px of the page. */
 #define FL_WET_DEEP_PX 21
 
 typedef struct FlMovingEdge {
+    FlRect rect;
     int n;
     FlEdgePoint *point;
     int32_t *nearest; // of rect: the point nearest to each pixel; -1: deep inside
-    float *distance;  // of rect: to the contour, positive inside
+    float *distance;  // of rect: to the contour, positive inside; NULL: not known
     int known;        // points whose motion is known
     float fastest;    // of all points, cells a frame
 } FlMovingEdge;
@@ -56,32 +56,16 @@ float fl_wet_plane_at(const float *plane, FlRect rect, float x, float y);
 /** The absorbance of paint that is seen on paper, of one channel. */
 float fl_wet_absorbance(uint8_t paint, uint8_t paper);
 
-/** The absorbance of the region's paint, laid at a place in rect in the frame before. Returns:
- * false if it was hidden; ink is the fill's then. */
-bool fl_wet_ink_at(const FlWetShape *shape, float x, float y, float ink[3]);
-
-/** A region's contour in the frame before: planes of `rect`. */
-typedef struct FlEdgeBefore {
-    FlRect rect;
-    float *distance; // NULL: the region is new
-    float *speed;    // of the contour nearest to each pixel, cells a frame; NULL: at rest
-} FlEdgeBefore;
+/** Finds the contour alone. FL_ERROR_NO_MEMORY. */
+bool fl_moving_edge_look(FlMovingEdge *edge, const FlWetShape *shape, GError **error);
 
 /**
  * Finds the contour and its motion, into which that of the frame before is smoothed. edge->n is 0
  * where there is no contour. FL_ERROR_NO_MEMORY.
  */
-bool fl_moving_edge_init(FlMovingEdge *edge, const FlWetShape *shape, const FlEdgeBefore *before,
-                         GError **error);
-
-/** The distances of a frame alone. FL_ERROR_NO_MEMORY. */
-bool fl_edge_before_look(FlEdgeBefore *before, const FlWetShape *shape, GError **error);
-
-/** Makes this frame the one before. FL_ERROR_NO_MEMORY. */
-bool fl_edge_before_take(FlEdgeBefore *before, const FlWetShape *shape, const FlMovingEdge *edge,
+bool fl_moving_edge_init(FlMovingEdge *edge, const FlWetShape *shape, const FlMovingEdge *before,
                          GError **error);
 void fl_moving_edge_clear(FlMovingEdge *edge);
-void fl_edge_before_clear(FlEdgeBefore *before);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlMovingEdge, fl_moving_edge_clear)
 

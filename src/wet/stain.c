@@ -52,7 +52,8 @@ static Cover cover_in_time(const Passing *pixel, float moved)
             cover.most = MAX(depth, cover.most), cover.when = (float)k / (float)steps;
         later = depth;
     }
-    cover.last = MAX(cover.last, 0);
+    if (cover.last < 0)
+        cover.last = cover.when;
     return cover;
 }
 
@@ -61,34 +62,13 @@ static float cover_of(float depth)
     return CLAMP(depth + 0.5f, 0, 1);
 }
 
-/** The share of its paint that the paper keeps: less of thin and fast strokes, 0 of shapes that
- * vanish without moving. */
-static float kept_of(const Passing *pixel, float moved, float ahead)
+static float between(float before, float now, float share)
 {
-    const FlWetShape *shape = pixel->shape;
-    const float px = shape->px, width = MAX(pixel->point->half_width, 2 * px);
-    const float speed = moved / shape->frames;
-    const float contact = 1 - fl_fall(MIN(6, 2 * width / MAX(speed, px)) / 1.5f);
-    const float rested = 0.8f + 0.4f * fl_bell(pixel->point->speed_before / px);
-    return fl_bell(speed / (2.2f * width)) * (1 - fl_ease(1.3f, 2, ahead / (moved + 3 * px))) *
-           contact * rested;
+    return before + share * (now - before);
 }
 
-/** The paint that a pixel had: its own texture, but for the rim, which would draw an arc in each
- * frame; there the paint further inside. */
-static void find_ink(const Passing *pixel, const Cover *cover, float ink[3])
-{
-    const FlWetShape *shape = pixel->shape;
-    const FlEdgePoint *point = pixel->point;
-    const float x = pixel->x - shape->ground_x - cover->when * point->u;
-    const float y = pixel->y - shape->ground_y - cover->when * point->v;
-    float own[3];
-    const bool known = fl_wet_ink_at(shape, x, y, own);
-    const float weight = known ? 0.45f * fl_ease(2 * shape->px, 12 * shape->px, cover->most) : 0;
-    for (int c = 0; c < 3; c++)
-        ink[c] = point->ink[c] + weight * (own[c] - point->ink[c]);
-}
-
+/** A mark lasts from the frame before to this one, and so do its strength and its ink: in one piece
+ * with the marks of the frames around. */
 static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, float now,
                  GArray *marks)
 {
@@ -96,13 +76,27 @@ static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, floa
     const FlEdgePoint *point = pixel->point;
     const float moved = sqrtf(point->u * point->u + point->v * point->v);
     const Cover cover = cover_in_time(pixel, moved);
-    const float lost = cover_of(cover.most) - cover_of(now);
-    if (lost <= 0.02f)
+    if (cover.most < -1.2f || cover.most < now + 0.01f)
         return;
-    FlStainMark mark = {.at = at, .lost = lost, .age = shape->frames * (1 - cover.last)};
-    mark.charge = dials->stain * (1 - cover_of(now)) * kept_of(pixel, moved, MAX(-now, 0));
-    find_ink(pixel, &cover, mark.ink);
+    const float lost = cover_of(cover.most) - cover_of(now);
+    const float far = MAX(-now, 0) / (moved + 3 * shape->px);
+    FlStainMark mark = {.at = at,
+                        .lost = lost,
+                        .age = shape->frames * (1 - cover.last),
+                        .depth = CLAMP(cover.most, -2, 2)};
+    mark.charge = dials->stain * (1 - cover_of(now)) * (1 - fl_ease(1.3f, 2, far)) *
+                  fl_ease(0, 0.1f, cover.most - now) *
+                  between(point->kept_before, point->kept, cover.last);
+    for (int c = 0; c < 3; c++)
+        mark.ink[c] = between(point->ink_before[c], point->ink[c], cover.last);
     g_array_append_val(marks, mark);
+}
+
+/** The stain begins below the rim of a receding edge, so that no bare paper shows there. */
+static float under(const FlWetShape *shape, const FlEdgePoint *point)
+{
+    const float recedes = 1 - fl_fall(MAX(-point->speed, 0) / (2 * shape->px));
+    return recedes * MIN(6 * shape->px, 0.4f * point->half_width);
 }
 
 void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
@@ -116,7 +110,7 @@ void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
                 continue;
             const FlEdgePoint *point = &edge->point[edge->nearest[p]];
             const float inset = MIN(2.5f * shape->px, 0.45f * point->half_width);
-            const float now = edge->distance[p] - inset;
+            const float now = edge->distance[p] - inset - under(shape, point);
             const float reach = fabsf(point->u) + fabsf(point->v) + 2;
             const bool far = -now > reach && shape->distance_before[p] < inset - reach;
             if (now >= 0.5f || far)
@@ -124,4 +118,30 @@ void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
             const Passing pixel = {shape, point, edge->distance, inset, (float)x, (float)y};
             pass(&pixel, dials, (rect.y + y) * shape->page.width + rect.x + x, now, marks);
         }
+}
+
+/** The share of an earlier front that stays where the shape has gone on to a distance. */
+static float stays(const FlWetShape *shape, const FlMovingEdge *edge, int x, int y)
+{
+    const FlRect rect = shape->rect;
+    if (x < rect.x || y < rect.y || x >= rect.x + rect.width || y >= rect.y + rect.height)
+        return 0;
+    const size_t p = (size_t)(y - rect.y) * (size_t)rect.width + (size_t)(x - rect.x);
+    if (edge->nearest[p] < 0)
+        return 1;
+    const FlEdgePoint *point = &edge->point[edge->nearest[p]];
+    const float moved = sqrtf(point->u * point->u + point->v * point->v);
+    return 1 - fl_ease(1, 1.5f, -edge->distance[p] / (moved + 24 * shape->px));
+}
+
+void fl_marks_lose_fronts(const FlWetShape *shape, const FlMovingEdge *edge, const GArray *fronts,
+                          GArray *marks)
+{
+    for (guint k = 0; k < fronts->len; k++) {
+        const int32_t at = g_array_index(fronts, FlFrontMark, k).at;
+        const int width = shape->page.width;
+        const FlStainMark mark = {.at = at, .lost = 1 - stays(shape, edge, at % width, at / width)};
+        if (mark.lost > 0)
+            g_array_append_val(marks, mark);
+    }
 }

@@ -8,14 +8,14 @@
 #include "wet/wet_data.h"
 #include <math.h>
 
-#define CELL_PX 1.3f // px of a page of FL_WET_PAGE_PX that a cell may have, about
+#define CELL_PX 2 // px of a page of FL_WET_PAGE_PX that a cell has, about
 
 FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], int known, FlWetMotion motion,
                   void *data, GError **error)
 {
     const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
     const float page_px = (float)MAX(width, height) / FL_WET_PAGE_PX;
-    const int cell = MAX((int)(page_px / CELL_PX + 0.5f), 1);
+    const int cell = MAX((int)(CELL_PX * page_px + 0.5f), 1);
     g_autoptr(FlWet) wet = g_new0(FlWet, 1);
     *wet = (FlWet){.plan = plan, .motion = motion, .motion_data = data, .cell = cell, .at = -1};
     memcpy(wet->paper, paper, 3);
@@ -25,7 +25,7 @@ FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], int known, FlWetMo
     const size_t n = (size_t)columns * (size_t)rows;
     const double fps = plan->options.fps > 0 ? plan->options.fps : 24;
     wet->sheet.page = (FlRect){0, 0, columns, rows};
-    wet->sheet.width = width, wet->sheet.height = height;
+    wet->sheet.width = width, wet->sheet.height = height, wet->sheet.cell_px = cell;
     wet->sheet.px = page_px / (float)cell;
     wet->sheet.stain_time = (float)(plan->options.stain_time * fps / 24);
     wet->sheet.fibres.seed = fl_key(plan->options.paper_seed, 0x776574);
@@ -43,7 +43,7 @@ void fl_wet_free(FlWet *wet)
     if (!wet)
         return;
     for (int m = 0; wet->marker && m < wet->plan->n_painted; m++) {
-        fl_edge_before_clear(&wet->marker[m].before);
+        fl_moving_edge_clear(&wet->marker[m].before);
         g_clear_pointer(&wet->marker[m].fronts, g_array_unref);
         g_clear_pointer(&wet->marker[m].stains, g_array_unref);
     }
@@ -130,8 +130,16 @@ static bool mark_all(FlWetStep *step, GError **error)
     for (int m = 0; m < wet->n_markers && cut < 1; m++)
         fl_wet_sheet_stain(&wet->sheet, wet->marker[m].dials.style, wet->marker[m].stains);
     for (int m = 0; m < wet->n_markers; m++)
-        fl_wet_sheet_wet(&wet->sheet, step->frames, wet->marker[m].fronts);
+        fl_wet_sheet_wet(&wet->sheet, wet->marker[m].dials.style, step->frames,
+                         wet->marker[m].fronts);
     return true;
+}
+
+void fl_wet_place_cells(FlWet *wet)
+{
+    const float c = (float)wet->cell;
+    wet->sheet.shift_x = (int)floorf(c * wet->camera_x + 0.5f);
+    wet->sheet.shift_y = (int)floorf(c * wet->camera_y + 0.5f);
 }
 
 static bool do_step(FlWet *wet, int before, int frame, const FlLaid *laid, GError **error)
@@ -145,6 +153,7 @@ static bool do_step(FlWet *wet, int before, int frame, const FlLaid *laid, GErro
     wet->camera_x -= dx, wet->camera_y -= dy;
     if (!fl_wet_sheet_move(&wet->sheet, (int)dx, (int)dy, error))
         return false;
+    fl_wet_place_cells(wet);
     fl_wet_sheet_dry(&wet->sheet, step.frames);
     return mark_all(&step, error);
 }
@@ -158,7 +167,7 @@ static bool is_new(const FlWet *wet, int frame)
 /** The frames before the first that is composed. */
 static bool roll_in(FlWet *wet, int frame, GError **error)
 {
-    const int n = fl_drawing_frames(wet->plan->drawing), hold = wet->plan->hold;
+    const int n = fl_drawing_frames(wet->plan->drawing);
     const int first = wet->plan->options.loop ? frame - wet->known : MAX(frame - wet->known, 0);
     int before = -1;
     for (int f = first; f < frame; f++) {
@@ -169,7 +178,6 @@ static bool roll_in(FlWet *wet, int frame, GError **error)
             return false;
         before = at;
     }
-    (void)hold;
     wet->at = before;
     return true;
 }

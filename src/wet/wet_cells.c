@@ -1,6 +1,7 @@
 #include "wet/wet_data.h"
 
 #include "base/alloc.h"
+#include <string.h>
 
 FlRect fl_wet_px_of(const FlWet *wet, FlRect cells)
 {
@@ -28,15 +29,23 @@ bool fl_wet_get_mask(const FlWet *wet, int region, int frame, FlRect rect, uint8
     g_autofree uint8_t *full = fl_alloc_unset(fl_rect_pixels(px), 1, "a mask", error);
     if (!full || !fl_mask_store_get(wet->plan->masks, region, frame, px, full, error))
         return false;
-    for (int y = 0; y < rect.height; y++)
-        for (int x = 0; x < rect.width; x++) {
-            const int right = MIN(c * x + c, px.width), lower = MIN(c * y + c, px.height);
-            int sum = 0, n = 0;
-            for (int j = c * y; j < lower; j++)
-                for (int i = c * x; i < right; i++, n++)
-                    sum += full[(size_t)j * (size_t)px.width + (size_t)i];
-            mask[(size_t)y * (size_t)rect.width + (size_t)x] = (uint8_t)(sum / MAX(n, 1));
+    g_autofree uint16_t *sums = g_new(uint16_t, px.width + c);
+    for (int y = 0; y < rect.height; y++) {
+        const int rows = MIN(c, px.height - c * y);
+        memset(sums, 0, ((size_t)px.width + (size_t)c) * sizeof *sums);
+        for (int j = c * y; j < c * y + rows; j++) {
+            const uint8_t *from = full + (size_t)j * (size_t)px.width;
+            for (int x = 0; x < px.width; x++)
+                sums[x] = (uint16_t)(sums[x] + from[x]);
         }
+        for (int x = 0; x < rect.width; x++) {
+            int sum = 0;
+            for (int i = c * x; i < c * x + c; i++)
+                sum += sums[i];
+            mask[(size_t)y * (size_t)rect.width + (size_t)x] =
+                (uint8_t)(sum / MAX(rows * MIN(c, px.width - c * x), 1));
+        }
+    }
     return true;
 }
 

@@ -16,9 +16,9 @@ typedef bool (*FlWetMotion)(void *data, int region, int before, int now, FlRect 
 /** A region that marks the paper. */
 typedef struct FlMarker {
     const FlRegionPlan *plan;
-    FlWetDials dials; // by its size in the film
-    float fill[3];    // absorbance
-    FlEdgeBefore before;
+    FlWetDials dials;    // by its size in the film
+    float fill[3];       // absorbance
+    FlMovingEdge before; // in the frame before
     bool rests;
     GArray *fronts, *stains; // of FlFrontMark and FlStainMark: those of the last frame
     float partner;           // share of it that was there a frame before
@@ -77,6 +77,9 @@ int fl_wet_shown_by(const FlRegionPlan *plan, int frame);
 
 /** Finds the marks of region m in a frame: the work of fl_schedule_run(), data is an FlWetStep. */
 bool fl_wet_mark_one(void *data, int m, int thread, GError **error);
+
+/** Shows the cells where the camera has moved them by less than a cell. */
+void fl_wet_place_cells(FlWet *wet);
 
 /** Makes the layer of the sheet as it is. */
 bool fl_wet_show(FlWet *wet, GError **error);

@@ -7,13 +7,12 @@
 #define FRONT_FRAMES 2.2f // in which a front dries
 #define GONE_FRAMES 36    // after which a stain is gone
 #define STRENGTH 0.9f     // of absorbances on the paper
-#define LEAST 0.002f      // of a mark that is seen
 
 /** The grain of the paper, once for the film: the pictures have the sheet's. */
 static void find_grain(FlWetSheet *sheet)
 {
     const int width = sheet->width, height = sheet->height;
-    const float px = sheet->px * (float)width / (float)sheet->page.width;
+    const float px = sheet->px * (float)sheet->cell_px;
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
@@ -45,37 +44,32 @@ void fl_wet_sheet_clear(FlWetSheet *sheet)
 
 static int wrapped(int x, int size)
 {
-    return x < 0 ? x + size : x < size ? x : x - size;
+    return (x % size + size) % size;
 }
 
-/** The grain at a px of the picture, which moves with the paper. */
-static FlPaperGrains grain_at(const FlWetSheet *sheet, int x, int y)
+/** The column and the row of the grain at a px of the cells, which moves with the paper. */
+static int grain_column(const FlWetSheet *sheet, int x)
 {
-    const int i = wrapped(x - sheet->moved_x, sheet->width);
-    const int j = wrapped(y - sheet->moved_y, sheet->height);
-    return sheet->grain[(size_t)j * (size_t)sheet->width + (size_t)i];
+    return wrapped(x - sheet->cell_px * (int)sheet->fibres.x, sheet->width);
+}
+
+static const FlPaperGrains *grain_row(const FlWetSheet *sheet, int y)
+{
+    const int row = wrapped(y - sheet->cell_px * (int)sheet->fibres.y, sheet->height);
+    return sheet->grain + (size_t)row * (size_t)sheet->width;
 }
 
 FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t at)
 {
-    const float scale = (float)sheet->width / (float)sheet->page.width;
-    const int x = (int)(scale * ((float)(at % sheet->page.width) + 0.5f));
-    const int y = (int)(scale * ((float)(at / sheet->page.width) + 0.5f));
-    return grain_at(sheet, MIN(x, sheet->width - 1), MIN(y, sheet->height - 1));
-}
-
-static void place_paper(FlWetSheet *sheet, float x, float y)
-{
-    const float scale = (float)sheet->width / (float)sheet->page.width;
-    sheet->fibres.x = x, sheet->fibres.y = y;
-    sheet->moved_x = (int)(scale * x) % sheet->width;
-    sheet->moved_y = (int)(scale * y) % sheet->height;
+    const int c = sheet->cell_px;
+    const int x = c * (at % sheet->page.width) + c / 2, y = c * (at / sheet->page.width) + c / 2;
+    return grain_row(sheet, y)[grain_column(sheet, x)];
 }
 
 void fl_wet_sheet_restore(FlWetSheet *sheet, FlRect wet, const FlWetCell *cells, float moved_x,
                           float moved_y)
 {
-    place_paper(sheet, moved_x, moved_y);
+    sheet->fibres.x = moved_x, sheet->fibres.y = moved_y;
     sheet->wet = wet;
     fl_rect_copy(cells, wet, sheet->cell, sheet->page, sizeof *cells);
 }
@@ -91,7 +85,7 @@ bool fl_wet_sheet_move(FlWetSheet *sheet, int dx, int dy, GError **error)
     fl_rect_copy(sheet->cell, to, moved, page, sizeof *moved);
     free(sheet->cell);
     sheet->cell = moved;
-    place_paper(sheet, sheet->fibres.x + (float)dx, sheet->fibres.y + (float)dy);
+    sheet->fibres.x += (float)dx, sheet->fibres.y += (float)dy;
     sheet->wet = fl_rect_and(
         (FlRect){sheet->wet.x + dx, sheet->wet.y + dy, sheet->wet.width, sheet->wet.height}, page);
     return true;
@@ -162,20 +156,29 @@ static float between(float a, float b, float weight)
     return a + (b - a) * weight;
 }
 
+/** Mixes paint that comes to a cell with the cell's own: ink and granulation by their amounts. */
+static void add_ink(FlWetCell *cell, float more, const float ink[3], float granulation)
+{
+    const float share = more / (cell->front + cell->stain + cell->film + more);
+    for (int c = 0; c < 3; c++)
+        cell->ink[c] = between(cell->ink[c], ink[c], share);
+    cell->granulation = between(cell->granulation, granulation, share);
+}
+
 /** A cell has one stain, the stronger: the weaker leaves no trace. */
 static void stain_cell(const FlWetSheet *sheet, const FlFrontStyle *style, const FlStainMark *mark,
                        FlWetCell *cell)
 {
     const float hollow = share_of(fl_wet_sheet_grain(sheet, mark->at).hollow);
-    const float old = cell->stain * left_of(sheet, cell->age, hollow);
-    const float stain = style->stain * mark->charge;
+    const float old = cell->depth > 0 ? cell->stain * left_of(sheet, cell->age, hollow) : 0;
+    const float stain = style->stain * mark->charge, film = style->film * mark->charge;
     cell->front *= 1 - mark->lost;
-    if (stain * left_of(sheet, mark->age, hollow) <= old)
+    if (stain * left_of(sheet, mark->age, hollow) <= old || (mark->depth <= 0 && old > 0))
         return;
-    cell->stain = stain, cell->film = style->film * mark->charge;
-    cell->age = mark->age;
-    cell->granulation = style->granulation;
-    memcpy(cell->ink, mark->ink, sizeof cell->ink);
+    cell->stain = cell->film = 0;
+    add_ink(cell, stain + film, mark->ink, style->granulation);
+    cell->stain = stain, cell->film = film;
+    cell->age = mark->age, cell->depth = mark->depth;
 }
 
 void fl_wet_sheet_stain(FlWetSheet *sheet, const FlFrontStyle *style, const GArray *stains)
@@ -186,125 +189,239 @@ void fl_wet_sheet_stain(FlWetSheet *sheet, const FlFrontStyle *style, const GArr
     }
 }
 
-void fl_wet_sheet_wet(FlWetSheet *sheet, float frames, const GArray *fronts)
+void fl_wet_sheet_wet(FlWetSheet *sheet, const FlFrontStyle *style, float frames,
+                      const GArray *fronts)
 {
     const float share = 1 - fl_fall(1.05f * frames); // 0.65 in a frame
     for (guint i = 0; i < fronts->len; i++) {
         const FlFrontMark *mark = &g_array_index(fronts, FlFrontMark, i);
         FlWetCell *cell = cell_at(sheet, mark->at);
         const float more = share * (mark->density - cell->front);
+        if (cell->front <= 0)
+            cell->edge = -1, cell->line = 0;
+        cell->edge += share * MAX(mark->edge - cell->edge, 0);
+        cell->line += share * MAX(mark->line - cell->line, 0);
         if (more <= 0)
             continue;
-        for (int c = 0; c < 3; c++)
-            cell->front_ink[c] =
-                between(cell->front_ink[c], mark->ink[c], more / (cell->front + more));
+        add_ink(cell, more, mark->ink, style->granulation);
         cell->front += more;
     }
 }
 
-/** The density of a cell's stain at a place of the cell. */
-static float stain_at(const FlWetSheet *sheet, const FlWetCell *cell, float hollow, float spot)
+/* ---- the layer ------------------------------------------------------------------------------ */
+
+/** The contents of a cell, so that they can be mixed by shares. */
+typedef enum Channel {
+    FRONTS, // 1 where there is a front
+    FRONT,
+    EDGE,
+    LINE,
+    STAINS, // 1 where there is a stain
+    STAIN,
+    FILM,
+    DEPTH,
+    AGE,         // times stain and film
+    GRANULATION, // times all paint, and so are
+    INK,         // three
+    N_CHANNELS = INK + 3,
+} Channel;
+
+/** Room for a thread: rows of cells, with two more at both ends. A row of px is done in turns: px 0
+ * of all cells, then px 1. */
+typedef struct LayerRows {
+    int at;        // of the lower row of cells; -1: none is read
+    FlColumns wet; // cells in which the two rows are
+    float *upper[N_CHANNELS], *lower[N_CHANNELS], *mixed[N_CHANNELS];
+    float *px[N_CHANNELS], *hollow, *spot;
+    float *through[3]; // light that the marks let through
+    float *room;
+} LayerRows;
+
+static void layer_rows_init(LayerRows *rows, const FlWetSheet *sheet)
 {
-    if (cell->stain <= 0 && cell->film <= 0)
-        return 0;
-    const float late = 0.5f * (hollow + spot), g = cell->granulation;
-    const float film = cell->film * fl_ease(0, 0.9f, (1.2f + 3.6f * late - cell->age) / 1.6f);
-    const float grain = 1 - 0.55f * g + 1.1f * g * (hollow - 0.5f);
-    const float stain = cell->stain * left_of(sheet, cell->age, hollow) * CLAMP(grain, 0.1f, 1.4f);
-    return film + stain - film * stain;
+    const size_t n = (size_t)sheet->page.width + 4;
+    float **const list[] = {rows->upper, rows->lower, rows->mixed, rows->px};
+    float **const more[] = {&rows->hollow, &rows->spot, &rows->through[0], &rows->through[1],
+                            &rows->through[2]};
+    float *next = rows->room = g_new(float, n *(4 * N_CHANNELS + G_N_ELEMENTS(more)));
+    for (size_t k = 0; k < G_N_ELEMENTS(list); k++)
+        for (int c = 0; c < N_CHANNELS; c++, next += n)
+            list[k][c] = next + 2;
+    for (size_t k = 0; k < G_N_ELEMENTS(more); k++, next += n)
+        *more[k] = next + 2;
+    rows->at = -1;
 }
 
-/** The light that marks let through, as straight RGBA over the paper. */
-static bool pixel_of(const float ink[3], float cover, const uint8_t paper[3], uint8_t rgba[4])
+/** Reads a row of cells, and what lies beyond both ends. Returns: those that are wet. */
+static FlColumns read_cells(const FlWetSheet *sheet, int y, float *const *to)
 {
-    float through[3], least = 1;
-    for (int c = 0; c < 3; c++) {
-        through[c] = fl_fall(STRENGTH * cover * ink[c]);
-        least = MIN(least, through[c]);
+    const int n = sheet->page.width;
+    const FlRect near = fl_rect_grown(sheet->wet, 3, (FlRect){-2, 0, n + 4, sheet->page.height});
+    const FlWetCell *cells = sheet->cell + (size_t)y * (size_t)n;
+    FlColumns wet = {n, 0};
+    for (int x = near.x; x < near.x + near.width; x++) {
+        const FlWetCell *cell = &cells[CLAMP(x, 0, n - 1)];
+        const float stain = cell->stain + cell->film, paint = stain + cell->front;
+        to[FRONTS][x] = cell->front > 0, to[STAINS][x] = stain > 0;
+        to[FRONT][x] = cell->front, to[EDGE][x] = cell->front > 0 ? cell->edge : -1;
+        to[LINE][x] = cell->front > 0 ? cell->line : 0;
+        to[STAIN][x] = cell->stain, to[FILM][x] = cell->film;
+        to[DEPTH][x] = stain > 0 ? cell->depth : -1;
+        to[AGE][x] = stain * cell->age, to[GRANULATION][x] = paint * cell->granulation;
+        for (int c = 0; c < 3; c++)
+            to[INK + c][x] = paint * cell->ink[c];
+        if (paint > 0)
+            wet = (FlColumns){MIN(wet.first, x), x + 1};
     }
-    const int alpha = (int)ceilf(255 * (1 - least) - 0.25f);
-    if (alpha <= 0)
-        return false;
-    const float hidden = (float)alpha / 255;
-    for (int c = 0; c < 3; c++) {
-        const float own = (float)paper[c] * (through[c] - 1 + hidden) / hidden;
-        rgba[c] = (uint8_t)(CLAMP(own, 0, 255) + 0.5f);
-    }
-    rgba[3] = (uint8_t)alpha;
-    return true;
+    return (FlColumns){MAX(wet.first - 1, -1), MIN(wet.last + 1, n + 1)};
 }
 
-/** Four cells around a place, by their shares. */
-static FlWetCell mix_cells(const FlWetSheet *sheet, float x, float y)
+/** Mixes what two planes have by a share of the second. */
+static void mix(float *const *a, float *const *b, int right, float share, FlColumns columns,
+                float *const *to)
 {
-    const FlRect page = sheet->page;
-    const float cx = CLAMP(x, 0, (float)page.width - 1), cy = CLAMP(y, 0, (float)page.height - 1);
-    const int ix = (int)cx, iy = (int)cy;
-    FlWetCell mixed = {0};
-    float front = 0, stain = 0;
-    for (int k = 0; k < 4; k++) {
-        const int column = MIN(ix + k % 2, page.width - 1), row = MIN(iy + k / 2, page.height - 1);
-        const float tx = cx - (float)ix, ty = cy - (float)iy;
-        const float share = (k % 2 ? tx : 1 - tx) * (k / 2 ? ty : 1 - ty);
-        const FlWetCell *cell = &sheet->cell[(size_t)row * (size_t)page.width + (size_t)column];
-        const float of_front = share * cell->front, of_stain = share * (cell->stain + cell->film);
-        mixed.front += of_front;
-        mixed.stain += share * cell->stain, mixed.film += share * cell->film;
-        front += of_front, stain += of_stain;
-        mixed.age += of_stain * cell->age, mixed.granulation += of_stain * cell->granulation;
+    for (int c = 0; c < N_CHANNELS; c++) {
+        const float *one = a[c], *other = b[c] + right;
+        float *mixed = to[c];
+        for (int x = columns.first; x < columns.last; x++)
+            mixed[x] = one[x] + share * (other[x] - one[x]);
+    }
+}
+
+/** The cell before a px of those of a cell, 0 or -1 from that, and the share of the one after. */
+static int cell_before(const FlWetSheet *sheet, int px, float *share)
+{
+    const float at = ((float)px + 0.5f) / (float)sheet->cell_px - 0.5f;
+    *share = at < 0 ? at + 1 : at;
+    return at < 0 ? -1 : 0;
+}
+
+/** The grain of px x of each cell, in row y of the px of cells. */
+static void read_grain(const FlWetSheet *sheet, int x, int y, FlColumns columns,
+                       const LayerRows *rows)
+{
+    const FlPaperGrains *grain = grain_row(sheet, y);
+    int column = grain_column(sheet, sheet->cell_px * columns.first + x);
+    for (int i = columns.first; i < columns.last; i++) {
+        rows->hollow[i] = share_of(grain[column].hollow);
+        rows->spot[i] = share_of(grain[column].spot);
+        column += sheet->cell_px;
+        if (column >= sheet->width)
+            column -= sheet->width;
+    }
+}
+
+/** The marks are as sharp as the px: a front ends where its edge is 0, a stain where its depth is.
+ */
+static void shine_through(const FlWetSheet *sheet, FlColumns columns, const LayerRows *rows)
+{
+    float *const *m = rows->px;
+    const float cell_px = (float)sheet->cell_px;
+#pragma omp simd
+    for (int x = columns.first; x < columns.last; x++) {
+        const float hollow = rows->hollow[x], spot = rows->spot[x];
+        const float fronts = MAX(m[FRONTS][x], 1e-6f), stains = MAX(m[STAINS][x], 1e-6f);
+        const float wet = MAX(m[STAIN][x] + m[FILM][x], 1e-9f);
+        const float paint = m[FRONT][x] + wet;
+        const float g = m[GRANULATION][x] / paint, age = m[AGE][x] / wet;
+        const float grain = 0.86f + 0.5f * g * (hollow - 0.5f) + 0.2f * spot;
+        const float tip = m[LINE][x] * fl_bell(1.3f * (m[EDGE][x] - 0.6f));
+        const float front =
+            MIN(fl_ease(0, 1, m[EDGE][x]) * (m[FRONT][x] * grain + tip) / fronts, 1);
+        const float late = 0.5f * (hollow + spot);
+        const float film = m[FILM][x] * fl_ease(0, 0.9f, (1.2f + 3.6f * late - age) / 1.6f);
+        const float coarse = CLAMP(1 - 0.55f * g + 1.1f * g * (hollow - 0.5f), 0.1f, 1.4f);
+        const float pigment = m[STAIN][x] * left_of(sheet, age, hollow) * coarse;
+        const float sides = CLAMP(m[DEPTH][x] * cell_px + 0.5f, 0, 1) / stains;
+        const float stain = MIN(sides * (film + pigment - film * pigment / stains), 1);
+        const float dense = STRENGTH * (1 - (1 - stain) * (1 - front)) / paint;
+        rows->through[0][x] = fl_fall(dense * m[INK][x]);
+        rows->through[1][x] = fl_fall(dense * m[INK + 1][x]);
+        rows->through[2][x] = fl_fall(dense * m[INK + 2][x]);
+    }
+}
+
+/** The light that marks let through, as straight RGBA over the paper. Returns: true if any is
+ * missing. */
+static bool write_px(const FlWetSheet *sheet, const LayerRows *rows, int x, FlColumns columns,
+                     const uint8_t paper[3], FlColumns part, uint8_t *rgba)
+{
+    bool any = false;
+    for (int i = columns.first; i < columns.last; i++) {
+        const float through[3] = {rows->through[0][i], rows->through[1][i], rows->through[2][i]};
+        const float least = MIN(MIN(through[0], through[1]), through[2]);
+        const int alpha = (int)(255 * (1 - least) + 0.75f);
+        const int px = sheet->cell_px * i + x + sheet->shift_x;
+        if (alpha <= 0 || px < part.first || px >= part.last)
+            continue;
+        const float shown = 255 / (float)alpha;
+        uint8_t *to = rgba + 4 * (px - part.first);
         for (int c = 0; c < 3; c++) {
-            mixed.front_ink[c] += of_front * cell->front_ink[c];
-            mixed.ink[c] += of_stain * cell->ink[c];
+            const float own = (float)paper[c] * (1 - (1 - through[c]) * shown);
+            to[c] = (uint8_t)(CLAMP(own, 0, 255) + 0.5f);
         }
+        to[3] = (uint8_t)alpha;
+        any = true;
     }
-    for (int c = 0; c < 3; c++) {
-        mixed.front_ink[c] /= MAX(front, 1e-9f);
-        mixed.ink[c] /= MAX(stain, 1e-9f);
-    }
-    mixed.age /= MAX(stain, 1e-9f), mixed.granulation /= MAX(stain, 1e-9f);
-    return mixed;
+    return any;
 }
 
-static bool mark_pixel(const FlWetSheet *sheet, int px, int py, const uint8_t paper[3],
-                       uint8_t rgba[4])
+/** A row of px of the layer. Returns: true if any is marked. */
+static bool layer_row(const FlWetSheet *sheet, LayerRows *rows, int y, FlColumns part,
+                      const uint8_t paper[3], uint8_t *rgba)
 {
-    const float scale = (float)sheet->width / (float)sheet->page.width;
-    const bool same = sheet->width == sheet->page.width;
-    const FlWetCell cell = same ? sheet->cell[(size_t)py * (size_t)sheet->width + (size_t)px]
-                                : mix_cells(sheet, ((float)px + 0.5f) / scale - 0.5f,
-                                            ((float)py + 0.5f) / scale - 0.5f);
-    if (cell.front + cell.stain + cell.film < LEAST)
+    const int cell_px = sheet->cell_px, last = sheet->page.height - 1;
+    float share;
+    const int place = y - sheet->shift_y + cell_px; // of the cell above the page it would be 0
+    const int at = place / cell_px + cell_before(sheet, place % cell_px, &share);
+    if (at != rows->at) {
+        const FlColumns upper = read_cells(sheet, CLAMP(at - 1, 0, last), rows->upper);
+        const FlColumns lower = read_cells(sheet, CLAMP(at, 0, last), rows->lower);
+        rows->wet = (FlColumns){MIN(upper.first, lower.first), MAX(upper.last, lower.last)};
+        rows->at = at;
+    }
+    const FlColumns wet = rows->wet, around = {wet.first - 1, wet.last + 1};
+    bool any = false;
+    if (wet.first >= wet.last)
         return false;
-    const FlPaperGrains grain = grain_at(sheet, px, py);
-    const float stain = stain_at(sheet, &cell, share_of(grain.hollow), share_of(grain.spot));
-    const float sum = stain + cell.front;
-    float ink[3];
-    for (int c = 0; c < 3; c++)
-        ink[c] = (stain * cell.ink[c] + cell.front * cell.front_ink[c]) / MAX(sum, 1e-6f);
-    return pixel_of(ink, 1 - (1 - MIN(stain, 1)) * (1 - cell.front), paper, rgba);
+    mix(rows->upper, rows->lower, 0, share, around, rows->mixed);
+    for (int x = 0; x < cell_px; x++) {
+        const int left = cell_before(sheet, x, &share);
+        if (left < 0)
+            mix(rows->mixed, rows->mixed, -1, 1 - share, wet, rows->px);
+        else
+            mix(rows->mixed, rows->mixed, 1, share, wet, rows->px);
+        read_grain(sheet, x, y - sheet->shift_y, wet, rows);
+        shine_through(sheet, wet, rows);
+        any = write_px(sheet, rows, x, wet, paper, part, rgba) || any;
+    }
+    return any;
 }
 
 bool fl_wet_sheet_layer(const FlWetSheet *sheet, const uint8_t paper[3], FlStainLayer *layer,
                         GError **error)
 {
-    const float scale = (float)sheet->width / (float)sheet->page.width;
     const FlRect wet = sheet->wet, frame = {0, 0, sheet->width, sheet->height};
-    const int x0 = (int)(scale * (float)(wet.x - 1)), y0 = (int)(scale * (float)(wet.y - 1));
-    const int x1 = (int)ceilf(scale * (float)(wet.x + wet.width + 1));
-    const int y1 = (int)ceilf(scale * (float)(wet.y + wet.height + 1));
-    const FlRect box = fl_rect_and(fl_rect_between(MAX(x0, 0), MAX(y0, 0), x1, y1), frame);
+    const int c = sheet->cell_px;
+    const FlRect near = {c * (wet.x - 1) + sheet->shift_x, c * (wet.y - 1) + sheet->shift_y,
+                         c * (wet.width + 2), c * (wet.height + 2)};
+    const FlRect box = fl_rect_and(near, frame);
     *layer = (FlStainLayer){.box = box};
     if (wet.width == 0 || box.width == 0)
         return true;
     if (!(layer->rgba = fl_alloc(4 * fl_rect_pixels(box), 1, "the paper's marks", error)))
         return false;
     int found = 0;
-#pragma omp parallel for schedule(static) reduction(+ : found)
-    for (int y = 0; y < box.height; y++)
-        for (int x = 0; x < box.width; x++) {
-            uint8_t *rgba = layer->rgba + 4 * ((size_t)y * (size_t)box.width + (size_t)x);
-            found += mark_pixel(sheet, box.x + x, box.y + y, paper, rgba);
-        }
+#pragma omp parallel reduction(+ : found)
+    {
+        LayerRows rows;
+        layer_rows_init(&rows, sheet);
+#pragma omp for schedule(static)
+        for (int y = box.y; y < box.y + box.height; y++)
+            found += layer_row(sheet, &rows, y, (FlColumns){box.x, box.x + box.width}, paper,
+                               layer->rgba + 4 * (size_t)(y - box.y) * (size_t)box.width);
+        g_free(rows.room);
+    }
     if (found == 0)
         g_clear_pointer(&layer->rgba, free);
     return true;

@@ -10,6 +10,8 @@
 typedef struct FlFrontMark {
     int32_t at;    // cell of the page
     float density; // 0..1, as dense as the paint
+    float edge;    // below 0 the front has not come so far, from 1 on it is whole
+    float line;    // density of its tip
     float ink[3];  // its absorbance
 } FlFrontMark;
 
@@ -19,17 +21,17 @@ typedef struct FlStainMark {
     float lost;   // share of the cell, 0..1
     float charge; // of paint on the paper
     float age;    // frames since it was uncovered
+    float depth;  // cells that the paint reached beyond the middle of the cell
     float ink[3];
 } FlStainMark;
 
-/** The contents of a cell. Inks are absorbances. */
+/** The contents of a cell. */
 typedef struct FlWetCell {
-    float front; // density of a front, 0..1
-    float front_ink[3];
-    float stain, film; // of the paint when it was uncovered: pigment, and water
-    float age;         // frames since then
+    float front, edge, line; // of the front's paint: as in FlFrontMark; 0: there is none
+    float stain, film;       // of the paint when it was uncovered: pigment, and water
+    float age, depth;        // as in FlStainMark
     float granulation;
-    float ink[3];
+    float ink[3]; // absorbance
 } FlWetCell;
 
 /** The paper at a place, each 0..255. */
@@ -40,12 +42,13 @@ typedef struct FlPaperGrains {
 typedef struct FlWetSheet {
     FlRect page;       // cells
     int width, height; // of the pictures, px
+    int cell_px;       // of the pictures
     float px;          // cells per px of a page of FL_WET_PAGE_PX
     float stain_time;
     FlFibres fibres;
     FlWetCell *cell;
     FlPaperGrains *grain; // of each px of the pictures
-    int moved_x, moved_y; // px that the paper has moved, less than their size
+    int shift_x, shift_y; // px by which the cells lie beside their place
     FlRect wet;           // beyond it all cells are dry
 } FlWetSheet;
 
@@ -70,7 +73,8 @@ void fl_wet_sheet_dry(FlWetSheet *sheet, float frames);
 void fl_wet_sheet_fade(FlWetSheet *sheet, float share);
 
 void fl_wet_sheet_stain(FlWetSheet *sheet, const FlFrontStyle *style, const GArray *stains);
-void fl_wet_sheet_wet(FlWetSheet *sheet, float frames, const GArray *fronts);
+void fl_wet_sheet_wet(FlWetSheet *sheet, const FlFrontStyle *style, float frames,
+                      const GArray *fronts);
 
 /**
  * The marks as a layer of the frame: over the paper, it multiplies that by what they let through.

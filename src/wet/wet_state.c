@@ -8,7 +8,7 @@
 /** Of a region. */
 typedef struct MarkerState {
     FlRect rect; // of its contour in the frame before
-    int32_t moves, rests;
+    int32_t n_points, rests;
     int32_t n_fronts;
 } MarkerState;
 
@@ -61,8 +61,7 @@ static void list_parts(State *state, const FlWet *wet)
     for (int m = 0; m < wet->n_markers; m++) {
         const FlMarker *marker = &wet->marker[m];
         const MarkerState *kept = &state->marker[m];
-        if (kept->moves)
-            add_part(state, marker->before.speed, fl_rect_pixels(kept->rect) * sizeof(float));
+        add_part(state, marker->before.point, (size_t)kept->n_points * sizeof(FlEdgePoint));
         add_part(state, marker->fronts->data, (size_t)kept->n_fronts * sizeof(FlFrontMark));
     }
 }
@@ -87,7 +86,7 @@ GBytes *fl_wet_save(const FlWet *wet, GError **error)
         const FlMarker *marker = &wet->marker[m];
         const bool holds = marker->plan->settings.hold != wet->plan->hold;
         state.marker[m] = (MarkerState){.rect = marker->before.rect,
-                                        .moves = marker->before.speed != NULL,
+                                        .n_points = marker->before.n,
                                         .rests = marker->rests,
                                         .n_fronts = holds ? (int32_t)marker->fronts->len : 0};
     }
@@ -125,25 +124,23 @@ static bool header_fits(const State *state, const FlWet *wet)
                 lies_in(sheet->wet, page) && are_sane(&sheet->camera_x, 4);
     for (int m = 0; m < wet->n_markers; m++)
         fits = fits && lies_in(state->marker[m].rect, page) && state->marker[m].n_fronts >= 0 &&
-               (size_t)state->marker[m].n_fronts <= fl_rect_pixels(page);
+               (size_t)state->marker[m].n_fronts <= fl_rect_pixels(page) &&
+               state->marker[m].n_points >= 0 &&
+               (size_t)state->marker[m].n_points <= fl_rect_pixels(state->marker[m].rect);
     return fits;
 }
 
-static bool make_room(const State *state, FlWet *wet, GError **error)
+static void make_room(const State *state, FlWet *wet)
 {
     for (int m = 0; m < wet->n_markers; m++) {
         FlMarker *marker = &wet->marker[m];
         const MarkerState *kept = &state->marker[m];
-        const size_t n = fl_rect_pixels(kept->rect);
-        fl_edge_before_clear(&marker->before);
-        marker->before.rect = kept->rect;
+        fl_moving_edge_clear(&marker->before);
+        marker->before.rect = kept->rect, marker->before.n = kept->n_points;
+        marker->before.point = g_new0(FlEdgePoint, MAX(kept->n_points, 1));
         marker->rests = kept->rests;
         g_array_set_size(marker->fronts, (guint)kept->n_fronts);
-        if (kept->moves &&
-            !(marker->before.speed = fl_alloc_unset(MAX(n, 1), sizeof(float), "an edge", error)))
-            return false;
     }
-    return true;
 }
 
 /** Says if all indices and numbers are in range. */
@@ -156,11 +153,11 @@ static bool parts_fit(const State *state, const FlWet *wet)
         fit = fit && wet->laid.region[p] < fl_drawing_regions(wet->plan->drawing);
     for (int m = 0; m < wet->n_markers; m++) {
         const FlMarker *marker = &wet->marker[m];
-        if (marker->before.speed)
-            fit = fit && are_sane(marker->before.speed, fl_rect_pixels(marker->before.rect));
+        fit = fit && are_sane((const float *)marker->before.point,
+                              (size_t)marker->before.n * sizeof(FlEdgePoint) / sizeof(float));
         for (guint k = 0; k < marker->fronts->len; k++) {
             const FlFrontMark *mark = &g_array_index(marker->fronts, FlFrontMark, k);
-            fit = fit && mark->at >= 0 && (size_t)mark->at < page && are_sane(&mark->density, 4);
+            fit = fit && mark->at >= 0 && (size_t)mark->at < page && are_sane(&mark->density, 6);
         }
     }
     return fit;
@@ -174,7 +171,8 @@ bool fl_wet_load(FlWet *wet, GBytes *bytes, GError **error)
         return false;
     if (!header_fits(&state, wet))
         return fl_state_bytes_damaged("the paper's header", error);
-    if (!make_room(&state, wet, error) || !alloc_cells(&state, error))
+    make_room(&state, wet);
+    if (!alloc_cells(&state, error))
         return false;
     list_parts(&state, wet);
     if (!fl_state_bytes_parts(bytes, state.bytes, &g_array_index(state.parts, FlSpan, 0),
@@ -184,6 +182,7 @@ bool fl_wet_load(FlWet *wet, GBytes *bytes, GError **error)
         return fl_state_bytes_damaged("the paper's marks", error);
     wet->at = state.sheet->at;
     wet->camera_x = state.sheet->camera_x, wet->camera_y = state.sheet->camera_y;
+    fl_wet_place_cells(wet);
     fl_wet_sheet_restore(&wet->sheet, state.sheet->wet, state.cells, state.sheet->paper_x,
                          state.sheet->paper_y);
     return fl_wet_show(wet, error);
