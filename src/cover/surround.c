@@ -294,8 +294,9 @@ static bool put_shown(const FlSurround *surround, const Frame *frame, GError **e
     return stored;
 }
 
-/** Stores the lowest figure of each pixel, byte by byte. */
-static bool put_lowest(const FlSurround *surround, const Frame *frame, const int *painted_of,
+/** Stores the lowest figure of each pixel, byte by byte: of all that have paint, whichever of them
+ * this run paints. */
+static bool put_lowest(const FlSurround *surround, const Frame *frame, const FlEdge *limits,
                        const bool *ground, GError **error)
 {
     const FlRect page = {0, 0, surround->width, surround->height};
@@ -305,7 +306,7 @@ static bool put_lowest(const FlSurround *surround, const Frame *frame, const int
             const FlDraw *draw = &frame->draws->draw[d];
             const int region = draw->region, byte = ((region + 1) >> (8 * k)) & 255;
             const FlRect box = draw->area.box;
-            if ((painted_of && painted_of[region] < 0) || (ground && ground[region]))
+            if (limits[region] == FL_EDGE_NONE || (ground && ground[region]))
                 continue;
             for (int y = 0; y < box.height; y++)
                 for (int x = 0; x < box.width; x++)
@@ -351,7 +352,7 @@ bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, c
         return false;
     const Frame all = {draws, &cover, frame, near, coverage};
     const bool done = put_shown(surround, &all, error) &&
-                      put_lowest(surround, &all, painted_of, ground, error) &&
+                      put_lowest(surround, &all, limits, ground, error) &&
                       put_regions(surround, &all, limits, painted_of, neighbours, error);
     for (int r = 0; r < draws->n; r++)
         free(near[r]);

@@ -25,8 +25,8 @@ bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, c
                      const int *painted_of, const bool *ground, const FlNeighbours *neighbours,
                      GError **error);
 
-/** Reads the lowest painted figure of each pixel of a part of a frame: its region + 1; 0: there is
- * none. */
+/** Reads the lowest of the figures that have paint, at each pixel of a part of a frame: its region
+ * + 1; 0: there is none. */
 bool fl_surround_lowest(const FlSurround *surround, int frame, FlRect part, uint16_t *lowest,
                         GError **error);
 
