@@ -23,6 +23,7 @@ typedef struct FlStyleInstance {
     FlMedium medium;
     FlMarks marks;
     float granulation; // as of fl_granulate()
+    FlFluidKind fluid; // FL_FLUID_STYLE: none
     FlFrontStyle front;
     FlWashStyle wash;
     float enlarged;  // px of the drawing per px of its pictures

@@ -392,9 +392,45 @@ static void leave_unknown(const Work *w, int32_t label, FlRect box)
         }
 }
 
+/** The share of a fluid in the motion of a pixel. */
+static float fluid_at(const Work *w, size_t p)
+{
+    const FlMovingRegion *r = w->region;
+    const int32_t label = w->label[p];
+    const FlMotionKind kind =
+        label == UNLABELLED ? FL_MOTION_REGISTERED : motion_of(w, label - 1)->kind;
+    const bool fixed = kind == FL_MOTION_STILL || kind == FL_MOTION_AFFINE;
+    return r->fluid && !fixed && !isnan(r->fluid[2 * p]) ? r->wetness : 0;
+}
+
+/** True if a fluid alone moves a leaf, so that nothing else need be found out. */
+static bool is_fluid(const Work *w, int i, FlRect box)
+{
+    bool all = w->region->fluid != NULL;
+    for (int y = box.y; y < box.y + box.height && all; y++)
+        for (int x = box.x; x < box.x + box.width && all; x++) {
+            const size_t p = (size_t)y * w->w + x;
+            all = w->label[p] != i + 1 || w->region->mask_now[p] == 0 || fluid_at(w, p) == 1;
+        }
+    return all;
+}
+
+static void add_fluid(const Work *w)
+{
+    const float *fluid = w->region->fluid;
+    for (size_t p = 0; p < (size_t)w->w * w->h && fluid; p++) {
+        float *motion = w->motion + 2 * p, share = w->region->mask_now[p] > 0 ? fluid_at(w, p) : 0;
+        for (int k = 0; k < 2 && share > 0; k++)
+            motion[k] = isnan(motion[k]) ? fluid[2 * p + k]
+                                         : motion[k] + share * (fluid[2 * p + k] - motion[k]);
+    }
+}
+
 static bool move_leaf(Work *w, int i, FlRect box, GError **error)
 {
     const FlLeafMotion *m = motion_of(w, i);
+    if (is_fluid(w, i, box))
+        return true;
     if (m->kind == FL_MOTION_REGISTERED)
         return move_by_masks(w, i + 1, error);
     if (box.width == 0)
@@ -418,12 +454,13 @@ static bool finish(Work *w, FlMotionShares *shares, GError **error)
     for (size_t p = 0; p < (size_t)w->w * w->h; p++) {
         if (r->mask_now[p] == 0)
             continue;
-        any |= w->label[p] == UNLABELLED;
+        any |= w->label[p] == UNLABELLED && fluid_at(w, p) < 1;
         if (r->mask_now[p] >= FL_INSIDE)
             *(by_masks(w, w->label[p]) ? &sum.registered : &sum.exact) += 1;
     }
     if (any && !move_by_masks(w, UNLABELLED, error))
         return false;
+    add_fluid(w);
     for (size_t k = 0; k < 2 * (size_t)w->w * w->h; k++)
         w->motion[k] = CLAMP(w->motion[k], -most, most);
     if (shares)

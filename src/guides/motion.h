@@ -14,6 +14,8 @@ typedef struct FlMovingRegion {
     const FlOutlines *before, *now;
     const FlCorrespondence *motions; // of all leaves of `now`
     const GArray *leaves;            // FlRegionLeaf of `now`, bottom up
+    const float *fluid; // the motion of a fluid in the region, as the motion; NULL: none
+    float wetness;      // its share in the motion of leaves that are neither still nor affine, 0..1
 } FlMovingRegion;
 
 /** Pixel counts by the source of their motion, pixels with coverage >= FL_INSIDE. */
@@ -29,7 +31,8 @@ typedef struct FlMotionShares {
  * A leaf's outline is believed only if the contour of the region lies along it where librsvg draws
  * the leaf, or a clip or mask may have changed it; the others, and those whose structure changes,
  * have the motion of fl_registration(). Leaves that are new, grow, have jumped or may lie behind a
- * clip that opens have NAN: their paint spreads as the masks show. shares may be NULL.
+ * clip that opens have NAN: their paint spreads as the masks show. A fluid, where it is not NAN,
+ * takes its share of what is known and all of what is not. shares may be NULL.
  *
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */

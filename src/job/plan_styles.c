@@ -3,6 +3,7 @@
 #include "base/page.h"
 #include "job/moved_paint.h"
 #include "style/style_folder.h"
+#include <math.h>
 #include <string.h>
 
 /* Sends a line to one of the options' callbacks. */
@@ -88,6 +89,25 @@ static void list_style(FlPlan *plan, const char *name)
         fl_inputs_add_style(plan->inputs, path);
 }
 
+/* The fluid of a region: the style's, where none is asked for and motion does not come from
+ * elsewhere. */
+static bool choose_fluid(const FlPlan *plan, FlRegionPlan *painted, GError **error)
+{
+    FlRegionSettings *settings = &painted->settings;
+    const bool elsewhere = settings->motion == FL_MOTION_MASKS || plan->options.flow;
+    if (elsewhere && settings->fluid > FL_FLUID_NONE) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "region %s: ‘fluid’ and ‘%s’ both say how paint moves; use one of them",
+                    painted->name, plan->options.flow ? "flow" : "motion masks");
+        return false;
+    }
+    if (settings->fluid == FL_FLUID_STYLE)
+        settings->fluid = elsewhere ? FL_FLUID_NONE : MAX(painted->style->fluid, FL_FLUID_NONE);
+    if (isnan(settings->wetness)) // patches, which keep to the paper, get blurred by all of it
+        settings->wetness = painted->engine->enlarges ? .5 : 1;
+    return true;
+}
+
 static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
 {
     const FlRegion *r = fl_drawing_region(plan->drawing, painted->region);
@@ -111,7 +131,8 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
         g_prefix_error(error, "region %s: ", r->name);
         return false;
     }
-    if (!check_export(plan, painted, error) || !warn_of_style(plan, painted, error))
+    if (!choose_fluid(plan, painted, error) || !check_export(plan, painted, error) ||
+        !warn_of_style(plan, painted, error))
         return false;
     if (plan->options.verbose)
         send_line(plan, plan->options.note, "region %s: style %s, engine %s", r->name,

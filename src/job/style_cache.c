@@ -118,6 +118,7 @@ static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
                                   .medium = style->medium,
                                   .marks = style->marks,
                                   .granulation = style->granulation,
+                                  .fluid = style->fluid,
                                   .front = style->front,
                                   .wash = style->wash};
     memcpy(instance->paper, style->paper, sizeof instance->paper);

@@ -124,7 +124,7 @@ static bool find_motion(FlLazy *lazy, const FlGuides *guides, GError **error)
     const size_t pixels = (size_t)lazy->width * (size_t)lazy->height;
     const int reach = (int)(BAND * lazy->sigma_px) + 3;
     return (lazy->motion = fl_alloc(2 * pixels, sizeof(float), "a flow field", error)) &&
-           fl_fluid_motion(guides, reach, lazy->motion, error);
+           fl_lazy_motion(guides, reach, lazy->motion, error);
 }
 
 static bool blur_mask(FlLazy *lazy, const uint8_t *mask, GError **error)

@@ -46,7 +46,7 @@ static void continue_motion(const FlGuides *guides, const float *motion, float *
         }
 }
 
-bool fl_fluid_motion(const FlGuides *guides, int reach, float *motion, GError **error)
+bool fl_lazy_motion(const FlGuides *guides, int reach, float *motion, GError **error)
 {
     const size_t pixels = (size_t)guides->width * (size_t)guides->height;
     g_autofree float *other = fl_alloc(2 * pixels, sizeof *other, "a flow field", error);

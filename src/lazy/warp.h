@@ -21,7 +21,7 @@ typedef struct FlFluidPast {
  * the masks. It is continued for `reach` px beyond the mask; NAN where motion is unknown: new fluid
  * appears at these pixels.
  */
-bool fl_fluid_motion(const FlGuides *guides, int reach, float *motion, GError **error);
+bool fl_lazy_motion(const FlGuides *guides, int reach, float *motion, GError **error);
 
 /**
  * Fills the planes of the past, and the weight of the past: 1, but 0 where the mask has fluid and

@@ -25,6 +25,19 @@ typedef enum FlMotion {
     FL_MOTION_MASKS, // the motion of outlines, as in the papers: paint is not carried along
 } FlMotion;
 
+/** The fluid inside the outline, whose flow carries the paint: guides/fluid.h. */
+typedef enum FlFluidKind {
+    FL_FLUID_STYLE, // what the style says
+    FL_FLUID_NONE,
+    FL_FLUID_PLAIN,
+    FL_FLUID_SMOKE,
+    FL_FLUID_WATER, // with walls and a floor, through which it does not grow
+    FL_FLUID_FIRE,
+    FL_FLUID_HONEY,
+} FlFluidKind;
+
+#define FL_FLUID_WORDS "style|none|plain|smoke|water|fire|honey"
+
 /** The engine that makes a region's paint: job/engine.h has the table. */
 typedef enum FlEngineChoice {
     FL_ENGINE_AUTO, // the style's
@@ -87,7 +100,12 @@ typedef struct FlRegionSettings {
     FlLine line;   // of a region that is not painted
     int line_boil; // frames until it is drawn anew; 0: never
     FlMotion motion;
-    int hold; // frames, 1..1000
+    FlFluidKind fluid;
+    double fluid_swirl, fluid_buoyancy, fluid_memory, fluid_emit; // NAN: the kind's
+    double fluid_up;                                              // degrees, clockwise from above
+    double fluid_drag;
+    double wetness; // share of the fluid in the motion; NAN: the engine's
+    int hold;       // frames, 1..1000
     bool reverse;
     FlPassthrough passthrough;
     char *merge_with; // another region's name, or NULL

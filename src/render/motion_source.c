@@ -256,6 +256,8 @@ static FlMovingRegion moving_of(const FlMotionSource *source, const FlRegionStep
     return (FlMovingRegion){.rect = source->halved ? fl_rect_halved(step->rect) : step->rect,
                             .side = side_of(source),
                             .outlines = step->outlines,
+                            .fluid = step->fluid,
+                            .wetness = step->wetness,
                             .before = use->before->outlines,
                             .now = use->now->outlines,
                             .motions = use->step->motions,

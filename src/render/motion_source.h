@@ -22,6 +22,8 @@ typedef struct FlRegionStep {
     int region, before, now;
     FlRect rect;            // px of the drawing
     FlOutlinePair outlines; // of its masks in rect, where they are known; halved as the motion is
+    const float *fluid;     // see FlMovingRegion
+    float wetness;
 } FlRegionStep;
 
 /**

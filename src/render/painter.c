@@ -122,7 +122,9 @@ static bool open_engine(FlPainter *painter, GError **error)
 static bool make_sequence(FlPainter *painter, GError **error)
 {
     const FlGuideSource source = fl_painter_guide_source(painter);
-    const FlGuideParams params = fl_guide_params(&painter->plan->settings.params);
+    const FlRegionSettings *settings = &painter->plan->settings;
+    const FlFluidDials dials = fl_fluid_dials(settings);
+    const FlGuideParams params = fl_guide_params(&settings->params);
     const int how[] = {source.width,
                        source.height,
                        painter->result.rect.x,
@@ -131,7 +133,7 @@ static bool make_sequence(FlPainter *painter, GError **error)
                        painter->result.rect.height,
                        source.n_frames,
                        painter->wrap,
-                       painter->plan->settings.hold,
+                       settings->hold,
                        source.keeps_flow,
                        source.flow != NULL,
                        source.motion != NULL,
@@ -139,10 +141,15 @@ static bool make_sequence(FlPainter *painter, GError **error)
     FlDigest made_of = {0};
     fl_digest_add(&made_of, how, sizeof how);
     fl_digest_add(&made_of, &params, sizeof params);
+    fl_digest_add(&made_of, &dials, sizeof dials);
+    fl_digest_add(&made_of, &settings->wetness, sizeof settings->wetness);
     if (painter->sequence && fl_digest_is_same(made_of, painter->sequence_of))
         return true;
     fl_guide_sequence_free(painter->sequence);
-    painter->sequence = fl_guide_sequence_new(&source, &params, error);
+    painter->sequence = fl_painter_open_fluid(painter, error)
+                            ? fl_guide_sequence_new(&source, &params, error)
+                            : NULL;
+    fl_painter_close_fluid(painter);
     painter->sequence_of = made_of;
     return painter->sequence != NULL;
 }

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_RENDER_PAINTER_H
 #define FLUIDY_RENDER_PAINTER_H
 
+#include "guides/fluid.h"
 #include "guides/guides.h"
 #include "job/region_plan.h"
 #include "render/loop.h"
@@ -23,7 +24,8 @@ typedef struct FlPainter {
     int next;          // pictures of the lead-in and the film before the next one to be painted
     bool follows;      // a picture was painted before, in this render or an earlier one
     int asked, answer; // a picture, and the one around which its depth is measured
-    double cost_s; // of the last picture that was synthesised, by one thread; 0 before the first
+    double cost_s;  // of the last picture that was synthesised, by one thread; 0 before the first
+    FlFluid *fluid; // while guides are made; NULL: the region has none
     FlGuideSequence *sequence;
     FlDigest sequence_of; // digest of all inputs of the sequence
     FlGuides guides;      // of the picture, for the engine; empty: it was not painted
@@ -113,6 +115,10 @@ FlRect fl_painter_guided(const FlPainter *painter);
  * replace the flow from the masks under motion = masks, else carry the paint.
  */
 FlGuideSource fl_painter_guide_source(FlPainter *painter);
+
+/** Opens the region's fluid, which moves while guides are made; regions without one need none. */
+bool fl_painter_open_fluid(FlPainter *painter, GError **error);
+void fl_painter_close_fluid(FlPainter *painter);
 
 /** Returns: true if the painter's picture has the guides of picture `last`, which its result still
  * shows. */

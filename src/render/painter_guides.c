@@ -38,13 +38,17 @@ FlRect fl_painter_page(const FlPainter *painter)
     return (FlRect){0, 0, painter->result.width, painter->result.height};
 }
 
-static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **error)
+static bool film_mask(const FlPainter *painter, int shown, uint8_t *coverage, GError **error)
 {
-    const FlPainter *painter = data;
     const FlRect rect = painter->result.rect;
-    const int region = painter->plan->region, shown = frame_of(painter, frame);
+    const int region = painter->plan->region;
     return (halves(painter) ? fl_mask_store_get_half : fl_mask_store_get)(
         painter->shapes->masks, region, shown, rect, coverage, error);
+}
+
+static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **error)
+{
+    return film_mask(data, frame_of(data, frame), coverage, error);
 }
 
 /* The flow into a picture, cropped to the painter's rectangle. */
@@ -99,38 +103,107 @@ static FlRegionStep step_into(const FlPainter *painter, int frame, const FlOutli
                           painter->result.rect, *outlines};
 }
 
-/* The drawing's own motion into a picture that has_past(). */
-static bool exact_motion(void *data, int frame, const FlOutlinePair *outlines, float *motion,
-                         GError **error)
+/* The outline of a frame of the film, of which the two of a step may be known; to be unref'd. */
+static FlOutline *outline_of(FlPainter *painter, int frame, FlOutline *known, FlOutline *before,
+                             GError **error)
 {
-    const FlPainter *painter = data;
-    const FlRegionStep step = step_into(painter, frame, outlines);
-    return fl_motion_source_get(painter->motion, &step, motion, NULL, error);
+    const FlRect rect = fl_painter_guided(painter);
+    if (known)
+        return fl_outline_ref(known);
+    g_autofree uint8_t *mask = fl_alloc(fl_rect_pixels(rect), 1, "a mask", error);
+    if (!mask || !film_mask(painter, frame, mask, error))
+        return NULL;
+    return before && fl_outline_equal(before, mask)
+               ? fl_outline_ref(before)
+               : fl_outline_new(mask, rect.width, rect.height, error);
 }
 
-static FlUniformMotion exact_uniform(void *data, int frame, const FlOutlinePair *outlines)
+/* The motion of the region's fluid over a step, to be freed; it moves by each frame of the film. */
+static float *fluid_motion(FlPainter *painter, const FlRegionStep *step, GError **error)
+{
+    const int n = painter->shapes->n_frames;
+    g_autofree float *motion = fl_alloc_scratch(2 * fl_rect_pixels(fl_painter_guided(painter)),
+                                                sizeof *motion, "a fluid", error);
+    g_autoptr(FlOutline) last =
+        motion ? outline_of(painter, step->before, step->outlines.before, NULL, error) : NULL;
+    if (!last)
+        return NULL;
+    fl_fluid_begin(painter->fluid);
+    for (int frame = step->before; frame != step->now;) {
+        frame = (frame + 1) % n;
+        FlOutline *known = frame == step->now ? step->outlines.now : NULL;
+        g_autoptr(FlOutline) before = last;
+        if (!(last = outline_of(painter, frame, known, before, error)))
+            return NULL;
+        fl_fluid_step(painter->fluid, before, last);
+    }
+    fl_fluid_motion(painter->fluid, motion);
+    return g_steal_pointer(&motion);
+}
+
+/* The motion into a picture that has_past(): the drawing's own, and the fluid's. */
+static bool known_motion(void *data, int frame, const FlOutlinePair *outlines, float *motion,
+                         GError **error)
+{
+    FlPainter *painter = data;
+    FlRegionStep step = step_into(painter, frame, outlines);
+    g_autofree float *fluid = NULL;
+    if (painter->fluid && !(fluid = fluid_motion(painter, &step, error)))
+        return false;
+    step.fluid = fluid, step.wetness = (float)painter->plan->settings.wetness;
+    if (painter->motion)
+        return fl_motion_source_get(painter->motion, &step, motion, NULL, error);
+    memcpy(motion, fluid, 2 * fl_rect_pixels(fl_painter_guided(painter)) * sizeof *motion);
+    return true;
+}
+
+static FlUniformMotion known_uniform(void *data, int frame, const FlOutlinePair *outlines)
 {
     const FlPainter *painter = data;
     const FlRegionStep step = step_into(painter, frame, outlines);
     if (!has_past(painter, frame))
         return FL_UNIFORM_UNKNOWN;
-    return fl_motion_source_rests(painter->motion, &step) ? FL_UNIFORM_REST : FL_UNIFORM_NOT;
+    if (!painter->motion || !fl_motion_source_rests(painter->motion, &step))
+        return FL_UNIFORM_NOT;
+    if (painter->fluid)
+        fl_fluid_step(painter->fluid, outlines->now, outlines->now);
+    return FL_UNIFORM_REST;
+}
+
+static bool has_fluid(const FlPainter *painter)
+{
+    return painter->plan->settings.fluid > FL_FLUID_NONE && !painter->shapes->flow;
+}
+
+bool fl_painter_open_fluid(FlPainter *painter, GError **error)
+{
+    const FlRect page = guided_part(painter->plan->style, fl_painter_page(painter));
+    const FlFluidDials dials = fl_fluid_dials(&painter->plan->settings);
+    fl_painter_close_fluid(painter);
+    return !has_fluid(painter) ||
+           (painter->fluid = fl_fluid_new(fl_painter_guided(painter), page, &dials, error));
+}
+
+void fl_painter_close_fluid(FlPainter *painter)
+{
+    g_clear_pointer(&painter->fluid, fl_fluid_free);
 }
 
 FlGuideSource fl_painter_guide_source(FlPainter *painter)
 {
     const bool masks = painter->plan->settings.motion == FL_MOTION_MASKS;
-    const bool given = painter->shapes->flow != NULL, exact = !masks && !given && painter->motion;
+    const bool given = painter->shapes->flow != NULL;
+    const bool known = !masks && !given && (painter->motion || has_fluid(painter));
     const FlRect rect = fl_painter_guided(painter);
     return (FlGuideSource){.width = rect.width,
                            .height = rect.height,
                            .n_frames = painter->n_pictures + 2 * painter->wrap,
                            .mask = painter_mask,
                            .flow = given && masks ? painter_flow : NULL,
-                           .motion = exact             ? exact_motion
+                           .motion = known             ? known_motion
                                      : given && !masks ? painter_motion
                                                        : NULL,
-                           .uniform = exact ? exact_uniform : NULL,
+                           .uniform = known ? known_uniform : NULL,
                            .data = painter,
                            .keeps_flow = painter->plan->keeps_flow};
 }

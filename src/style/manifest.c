@@ -9,7 +9,7 @@
 /* Sections of style.ini. */
 typedef enum Section { NOWHERE, STYLE, FRONT, WASH, OTHER } Section;
 
-typedef enum KeyType { TEXT, NUMBER, COLOUR, MEDIUM, MARKS } KeyType;
+typedef enum KeyType { TEXT, NUMBER, COLOUR, MEDIUM, MARKS, FLUID } KeyType;
 
 /* The keys: where the value goes in FlStyle, its range, and the guess that it replaces. */
 static const struct Key {
@@ -30,6 +30,7 @@ static const struct Key {
     {"medium", MEDIUM, offsetof(FlStyle, medium)},
     {"marks", MARKS, offsetof(FlStyle, marks)},
     {"granulation", NUMBER, offsetof(FlStyle, granulation), -1, 1},
+    {"fluid", FLUID, offsetof(FlStyle, fluid)},
     {"made-by", TEXT, offsetof(FlStyle, made_by)},
     {"missing-orientations", TEXT, offsetof(FlStyle, missing_orientations)},
     {"paper", COLOUR, offsetof(FlStyle, paper), 0, 0, FL_GUESS_PAPER},
@@ -105,6 +106,11 @@ static bool read_value(FlStyle *style, const struct Key *key, const char *value,
         if (!read_word(key->name, value, FL_MARKS_WORDS, &choice, error))
             return false;
         style->marks = (FlMarks)choice;
+        return true;
+    case FLUID:
+        if (!read_word(key->name, value, strchr(FL_FLUID_WORDS, '|') + 1, &choice, error))
+            return false;
+        style->fluid = (FlFluidKind)(FL_FLUID_NONE + choice);
         return true;
     case COLOUR:
         return fl_text_colour(value, field) ||
@@ -212,6 +218,10 @@ char *fl_manifest_text(const FlStyle *style)
         g_string_append_printf(text, "medium = %s\n", fl_medium_word(style->medium));
     if (style->marks != FL_MARKS_AUTO)
         g_string_append_printf(text, "marks = %s\n", fl_marks_word(style->marks));
+    if (style->fluid != FL_FLUID_STYLE) {
+        g_auto(GStrv) words = g_strsplit(FL_FLUID_WORDS, "|", -1);
+        g_string_append_printf(text, "fluid = %s\n", words[style->fluid]);
+    }
     if (!(style->guessed & FL_GUESS_PAPER))
         g_string_append_printf(text, "paper = #%02x%02x%02x\n", style->paper[0], style->paper[1],
                                style->paper[2]);

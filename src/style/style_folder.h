@@ -3,6 +3,7 @@
 #define FLUIDY_STYLE_STYLE_FOLDER_H
 
 #include "params/medium.h"
+#include "params/region_settings.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -55,6 +56,7 @@ typedef struct FlStyle {
     FlMedium medium;   // FL_MEDIUM_AUTO: not given
     FlMarks marks;     // FL_MARKS_AUTO: none
     float granulation; // of its paint on paper: see fl_granulate()
+    FlFluidKind fluid; // that carries its paint; FL_FLUID_STYLE: none is given
     FlFrontStyle front;
     FlWashStyle wash;
     float smoothness; // of its recording: see fl_style_smoothness()

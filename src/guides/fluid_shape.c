@@ -1,0 +1,301 @@
+#include "guides/fluid_data.h"
+
+#include <math.h>
+#include <string.h>
+
+#define CELLS 100   // along the larger side of the region's part of the page
+#define FINEST 160  // along the larger side of the page, at most
+#define FINEST_PX 2 // of a cell
+#define MARGIN 4    // cells around the part
+#define FAR 40      // the largest distance
+#define DEEP 7      // from the contour; beyond that the distance may be coarse
+#define NEAR 3      // from the contour, up to which it has a velocity
+#define FIT_STEPS 15
+#define LEAST_CONTOUR 6 // cells of contour of a part that flows
+#define LEAP .05f       // of the page's larger side
+#define NONE (-1)
+
+/** Lays cells over the part, with a margin and a border. Where the part ends at the page's edge
+ * there is no margin, so that faces on the edge are open. */
+void fl_fluid_lay_grid(FlFluid *f, FlRect part, FlRect page)
+{
+    const int page_side = MAX(page.width, page.height), side = MAX(part.width, part.height);
+    const int wanted = MAX((side + CELLS - 1) / CELLS, (page_side + FINEST - 1) / FINEST);
+    const int px = f->px = MAX(wanted, FINEST_PX);
+    const int part_at[2] = {part.x, part.y}, size[2] = {part.width, part.height};
+    const int page_at[2] = {page.x, page.y}, page_size[2] = {page.width, page.height};
+    int before[2], cells[2];
+    for (int k = 0; k < 2; k++) {
+        const bool starts = part_at[k] <= page_at[k];
+        const bool ends = part_at[k] + size[k] >= page_at[k] + page_size[k];
+        f->from[k] = starts ? -page_side : 0, f->to[k] = size[k] + (ends ? page_side : 0);
+        before[k] = 1 + (starts ? 0 : MARGIN);
+        cells[k] = before[k] + (size[k] + px - 1) / px + (ends ? 0 : MARGIN) + 2;
+    }
+    f->width = part.width, f->height = part.height;
+    f->left = before[0], f->top = before[1];
+    f->stride = cells[0], f->rows = cells[1], f->n = cells[0] * cells[1];
+    f->leap = LEAP * (float)page_side / (float)px;
+}
+
+void fl_fluid_lay_cells(FlFluid *f)
+{
+    for (int c = 0; c < f->n; c++) {
+        const int x = c % f->stride, y = c / f->stride;
+        f->column[c] = (float)x, f->line[c] = (float)y;
+        f->inner[c] = x > 0 && y > 0 && x < f->stride - 2 && y < f->rows - 2;
+        f->wall[c] = x == 0 || y == 0 || x == f->stride - 1 || y == f->rows - 1;
+    }
+}
+
+/* ---- distance and openings ----------------------------------------------------------------------
+ */
+
+/** The mean distance of the pixels of a cell, px; beyond the part it falls off. Deep inside and far
+ * outside it is that of the middle. */
+static float mean_distance(const FlFluid *f, const FlOutline *outline, int c)
+{
+    const int x = ((int)f->column[c] - f->left) * f->px, y = ((int)f->line[c] - f->top) * f->px;
+    const int l = CLAMP(x, 0, f->width - 1), r = CLAMP(x + f->px, l + 1, f->width);
+    const int t = CLAMP(y, 0, f->height - 1), b = CLAMP(y + f->px, t + 1, f->height);
+    const int away =
+        MAX(MAX(f->from[0] - x, x + f->px - f->to[0]), MAX(f->from[1] - y, y + f->px - f->to[1]));
+    const float middle = outline->distance[(t + b) / 2 * f->width + (l + r) / 2];
+    float sum = 0;
+    for (int j = t; j < b && fabsf(middle) < DEEP * (float)f->px; j++)
+        for (int i = l; i < r; i++)
+            sum += outline->distance[j * f->width + i] - middle;
+    return middle + sum / (float)((r - l) * (b - t)) - (float)(away >= f->px ? away : 0);
+}
+
+/** Blurs a plane to and fro along one way, by a Gaussian of half a cell. */
+void fl_fluid_blur(const FlFluid *f, float *plane, int beside, float *scratch)
+{
+    const float side = .1065f;
+    memcpy(scratch, plane, (size_t)f->n * sizeof *scratch);
+    for (int c = beside; c < f->n - beside; c++)
+        plane[c] = (1 - 2 * side) * scratch[c] + side * (scratch[c - beside] + scratch[c + beside]);
+}
+
+void fl_fluid_measure(FlFluid *f, const FlOutline *outline, float *distance)
+{
+    for (int c = 0; c < f->n; c++) {
+        const float d = outline->empty ? -FAR : mean_distance(f, outline, c) / (float)f->px;
+        distance[c] = CLAMP(d, -FAR, FAR);
+    }
+    fl_fluid_blur(f, distance, 1, f->a);
+    fl_fluid_blur(f, distance, f->stride, f->a);
+}
+
+/** The share of an edge that is inside, by the distances of its ends. */
+static float open_share(float a, float b)
+{
+    if (a > 0 && b > 0)
+        return 1;
+    return a <= 0 && b <= 0 ? 0 : a > 0 ? a / (a - b) : b / (b - a);
+}
+
+/** The distance at the upper left corner of a cell. */
+static float corner_at(const FlFluid *f, int c)
+{
+    const float *d = f->distance + c;
+    return .25f * (d[0] + d[-1] + d[-f->stride] + d[-f->stride - 1]);
+}
+
+static void find_openings(FlFluid *f)
+{
+    fl_fluid_clear(f, f->open_u);
+    fl_fluid_clear(f, f->open_v);
+    for (int c = f->stride + 1; c < f->n - f->stride - 1; c++) {
+        const float corner = corner_at(f, c);
+        if (f->inner[c] || f->inner[c - 1])
+            f->open_u[c] = open_share(corner, corner_at(f, c + f->stride));
+        if (f->inner[c] || f->inner[c - f->stride])
+            f->open_v[c] = open_share(corner, corner_at(f, c + 1));
+    }
+}
+
+/* ---- parts --------------------------------------------------------------------------------------
+ */
+
+static void visit(FlFluid *f, int c, float open, int32_t label, int *last)
+{
+    if (open > 0 && f->label[c] == NONE && f->inner[c])
+        f->label[c] = label, f->queue[(*last)++] = c;
+}
+
+static void fill_part(FlFluid *f, int first)
+{
+    const int32_t label = (int32_t)f->parts->len;
+    FlFluidPart part = {.deepest = -FAR, .radius = 1, .fresh = true, .rests = true};
+    int last = 0;
+    visit(f, first, 1, label, &last);
+    for (int k = 0; k < last; k++) {
+        const int c = f->queue[k];
+        part.cells++;
+        part.deepest = MAX(part.deepest, f->distance[c]);
+        part.overlaps |= f->before[c] > 0;
+        visit(f, c - 1, f->open_u[c], label, &last);
+        visit(f, c + 1, f->open_u[c + 1], label, &last);
+        visit(f, c - f->stride, f->open_v[c], label, &last);
+        visit(f, c + f->stride, f->open_v[c + f->stride], label, &last);
+    }
+    g_array_append_val(f->parts, part);
+}
+
+static void find_parts(FlFluid *f)
+{
+    g_array_set_size(f->parts, 0);
+    for (int c = 0; c < f->n; c++)
+        f->label[c] = NONE;
+    for (int c = 0; c < f->n; c++)
+        if (f->label[c] == NONE && f->inner[c] && fl_fluid_open_area(f, c) > 0)
+            fill_part(f, c);
+}
+
+/** The motion of a part as a rigid body, at a place. */
+void fl_fluid_rigid(const FlFluidPart *part, float x, float y, float motion[2])
+{
+    motion[0] = part->tx - part->turn * (y - part->cy) / part->radius;
+    motion[1] = part->ty + part->turn * (x - part->cx) / part->radius;
+}
+
+/** Lists the cells of contour, by which the parts' motion is found, and finds the middle of each
+ * part's contour. Returns: their number. */
+static int list_contour(FlFluid *f)
+{
+    int n = 0;
+    for (int c = 0; c < f->n; c++) {
+        FlFluidPart *part = fl_fluid_part(f, c);
+        if (!part || fabsf(f->distance[c]) > 1)
+            continue;
+        const float x = f->column[c], y = f->line[c];
+        f->queue[n++] = c;
+        part->contour++;
+        part->cx += x, part->cy += y;
+        part->g[0] += (double)(x * x + y * y);
+    }
+    for (guint l = 0; l < f->parts->len; l++) {
+        FlFluidPart *part = &g_array_index(f->parts, FlFluidPart, l);
+        const float share = 1 / (float)MAX(part->contour, 1);
+        part->cx *= share, part->cy *= share;
+        const float square = (float)part->g[0] * share - part->cx * part->cx - part->cy * part->cy;
+        part->radius = sqrtf(MAX(square, 1));
+        part->known = part->overlaps && part->contour > 0;
+    }
+    return n;
+}
+
+/** Adds a cell of contour to the equations for a step towards the rigid motion that explains how
+ * distances have changed, after Gauss and Newton. */
+static void add_equation(const FlFluid *f, int c, FlFluidPart *part)
+{
+    const float x = f->column[c], y = f->line[c];
+    float motion[2];
+    fl_fluid_rigid(part, x, y, motion);
+    const float u = x - motion[0], v = y - motion[1];
+    const float e = f->distance[c] - fl_fluid_sample(f, f->before, u, v);
+    const float dx =
+        .5f * (fl_fluid_sample(f, f->before, u + 1, v) - fl_fluid_sample(f, f->before, u - 1, v));
+    const float dy =
+        .5f * (fl_fluid_sample(f, f->before, u, v + 1) - fl_fluid_sample(f, f->before, u, v - 1));
+    const float turn = (dy * (x - part->cx) - dx * (y - part->cy)) / part->radius;
+    const float way[3] = {dx, dy, turn}, weight = 1 / (1 + e * e / 4);
+    for (int i = 0; i < 3; i++) {
+        part->g[i] -= (double)(weight * way[i] * e);
+        for (int j = 0; j < 3; j++)
+            part->m[i][j] += (double)(weight * way[i] * way[j]);
+    }
+}
+
+/** Solves the equations, which are positive definite, and takes the step. */
+static void take_step(FlFluidPart *part)
+{
+    double(*m)[3] = part->m, *g = part->g;
+    for (int i = 0; i < 3; i++)
+        for (int r = i + 1; r < 3; r++) {
+            const double share = m[r][i] / m[i][i];
+            for (int j = i; j < 3; j++)
+                m[r][j] -= share * m[i][j];
+            g[r] -= share * g[i];
+        }
+    for (int i = 2; i >= 0; i--) {
+        for (int j = i + 1; j < 3; j++)
+            g[i] -= m[i][j] * g[j];
+        g[i] /= m[i][i];
+    }
+    const double length = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+    const double share = length > 2 ? 2 / length : 1;
+    part->tx += (float)(share * g[0]), part->ty += (float)(share * g[1]);
+    part->turn += (float)(share * g[2]);
+}
+
+float fl_fluid_bulk_speed(const FlFluidPart *part)
+{
+    return sqrtf(part->tx * part->tx + part->ty * part->ty);
+}
+
+/** Finds the rigid motion of all parts. One that leaps by more than its size and more than a little
+ * of the page is not known to be the part that was there before. */
+static void fit_parts(FlFluid *f)
+{
+    FlFluidPart *const parts = (FlFluidPart *)(void *)f->parts->data;
+    const int n = list_contour(f);
+    for (int step = 0; step < FIT_STEPS; step++) {
+        for (guint l = 0; l < f->parts->len; l++) {
+            const double ridge = .01 * parts[l].contour;
+            memset(parts[l].m, 0, sizeof parts[l].m);
+            memset(parts[l].g, 0, sizeof parts[l].g);
+            parts[l].m[0][0] = parts[l].m[1][1] = ridge, parts[l].m[2][2] = 3 * ridge;
+        }
+        for (int k = 0; k < n; k++)
+            add_equation(f, f->queue[k], fl_fluid_part(f, f->queue[k]));
+        for (guint l = 0; l < f->parts->len; l++)
+            if (parts[l].known)
+                take_step(&parts[l]);
+    }
+    for (guint l = 0; l < f->parts->len; l++) {
+        FlFluidPart *part = &parts[l];
+        part->known &= fl_fluid_bulk_speed(part) <= MAX(1.4f * part->radius, f->leap);
+        if (!part->known)
+            part->tx = part->ty = part->turn = 0;
+        part->flows = part->known && part->contour >= LEAST_CONTOUR && part->deepest >= 1;
+    }
+}
+
+/* ---- contour ------------------------------------------------------------------------------------
+ */
+
+/** The normal and the velocity of the contour, in the cells beside it. */
+static void find_contour(FlFluid *f)
+{
+    for (int c = 0; c < f->n; c++) {
+        const FlFluidPart *part = fl_fluid_part(f, c);
+        f->speed[c] = f->nx[c] = f->ny[c] = f->length[c] = 0;
+        if (!part || fabsf(f->distance[c]) > NEAR)
+            continue;
+        const float dx = f->distance[c + 1] - f->distance[c - 1];
+        const float dy = f->distance[c + f->stride] - f->distance[c - f->stride];
+        const float slope = sqrtf(dx * dx + dy * dy) + 1e-6f;
+        const float ax = f->open_u[c] - f->open_u[c + 1],
+                    ay = f->open_v[c] - f->open_v[c + f->stride];
+        const float x = f->column[c], y = f->line[c];
+        float motion[2];
+        fl_fluid_rigid(part, x, y, motion);
+        const float grown =
+            f->distance[c] - fl_fluid_sample(f, f->before, x - motion[0], y - motion[1]);
+        f->nx[c] = -dx / slope, f->ny[c] = -dy / slope;
+        f->length[c] = sqrtf(ax * ax + ay * ay);
+        if (part->known)
+            f->speed[c] = CLAMP(grown, -FL_FLUID_FASTEST, FL_FLUID_FASTEST) + motion[0] * f->nx[c] +
+                          motion[1] * f->ny[c];
+    }
+}
+
+void fl_fluid_read_shape(FlFluid *f)
+{
+    find_openings(f);
+    find_parts(f);
+    fit_parts(f);
+    find_contour(f);
+}

@@ -1,0 +1,255 @@
+/* The fluid inside a moving outline, against flows that are known. */
+#include "guides/fluid.h"
+#include "params/region_settings.h"
+#include <math.h>
+#include <string.h>
+
+enum { SIDE = 200 };
+
+typedef double (*Shape)(double x, double y, int frame); // px inside its contour, about
+
+static FlOutline *outline_of(Shape shape, int frame)
+{
+    static uint8_t mask[SIDE * SIDE];
+    for (int p = 0; p < SIDE * SIDE; p++)
+        mask[p] =
+            (uint8_t)lround(255 * CLAMP(shape(p % SIDE + .5, p / SIDE + .5, frame) + .5, 0.0, 1.0));
+    return fl_outline_new(mask, SIDE, SIDE, NULL);
+}
+
+static FlFluid *fluid_of(const char *kind)
+{
+    const FlRect page = {0, 0, SIDE, SIDE};
+    g_auto(FlRegionSettings) settings;
+    fl_region_settings_init(&settings);
+    g_assert_true(fl_region_settings_set(&settings, "fluid", kind, NULL, NULL));
+    const FlFluidDials dials = fl_fluid_dials(&settings);
+    return fl_fluid_new(page, page, &dials, NULL);
+}
+
+static float motion[2 * SIDE * SIDE];
+
+/* Moves a fluid by frames first + 1 … last; motion has the sum. */
+static void flow(FlFluid *fluid, Shape shape, int first, int last)
+{
+    g_autoptr(FlOutline) now = outline_of(shape, first);
+    fl_fluid_begin(fluid);
+    for (int frame = first + 1; frame <= last; frame++) {
+        g_autoptr(FlOutline) before = now;
+        now = outline_of(shape, frame);
+        fl_fluid_step(fluid, before, fl_outlines_alike(before, now) ? before : now);
+    }
+    fl_fluid_motion(fluid, motion);
+}
+
+/* The mean error of the motion well inside a shape, over the mean length of a true one. */
+static double error_of(Shape shape, int frame, void (*truth)(double x, double y, double out[2]))
+{
+    double error = 0, length = 0;
+    for (int p = 0; p < SIDE * SIDE; p++) {
+        const double x = p % SIDE + .5, y = p / SIDE + .5;
+        double out[2];
+        if (shape(x, y, frame) < 4)
+            continue;
+        truth(x, y, out);
+        g_assert_true(isfinite(motion[2 * p]));
+        error += hypot((double)motion[2 * p] - out[0], (double)motion[2 * p + 1] - out[1]);
+        length += hypot(out[0], out[1]);
+    }
+    return error / length;
+}
+
+static double sliding(double x, double y, int frame)
+{
+    return 30 - hypot(x - 60 - 3.5 * frame, y - 90 - 1.5 * frame);
+}
+
+static void slide_of(double x, double y, double out[2])
+{
+    out[0] = 3.5, out[1] = 1.5;
+}
+
+static void test_slide(void)
+{
+    g_autoptr(FlFluid) fluid = fluid_of("plain");
+    for (int frame = 1; frame < 12; frame++)
+        flow(fluid, sliding, frame - 1, frame);
+    g_assert_cmpfloat(error_of(sliding, 11, slide_of), <, .02);
+}
+
+/* An ellipse that is drawn out: of all flows that follow its outline, one has neither divergence
+ * nor curl. */
+#define DRAWN .02
+static double half_axis(int frame)
+{
+    return 40 * exp(DRAWN * (frame + 1));
+}
+
+static double drawn(double x, double y, int frame)
+{
+    const double a = half_axis(frame), b = 1600 / a, u = x - 100, v = y - 100;
+    const double slope = 2 * hypot(u / (a * a), v / (b * b)) + 1e-9;
+    return (1 - u * u / (a * a) - v * v / (b * b)) / slope;
+}
+
+static void strain_of(double x, double y, double out[2])
+{
+    out[0] = (x - 100) * (1 - exp(-DRAWN)), out[1] = (y - 100) * (1 - exp(DRAWN));
+}
+
+static void test_strain(void)
+{
+    static const char *const kinds[] = {"plain", "water"};
+    for (size_t k = 0; k < G_N_ELEMENTS(kinds); k++) {
+        g_autoptr(FlFluid) fluid = fluid_of(kinds[k]);
+        for (int frame = 1; frame < 12; frame++)
+            flow(fluid, drawn, frame - 1, frame);
+        g_assert_cmpfloat(error_of(drawn, 11, strain_of), <, .08);
+    }
+}
+
+static void strain_of_two(double x, double y, double out[2])
+{
+    out[0] = (x - 100) * (1 - exp(-2 * DRAWN)), out[1] = (y - 100) * (1 - exp(2 * DRAWN));
+}
+
+static void test_held(void)
+{
+    g_autoptr(FlFluid) fluid = fluid_of("water");
+    for (int frame = 2; frame < 12; frame += 2)
+        flow(fluid, drawn, frame - 2, frame);
+    g_assert_cmpfloat(error_of(drawn, 10, strain_of_two), <, .08);
+}
+
+/* A column whose top rises: what it gains has to come in. */
+static double rising(double x, double y, int frame)
+{
+    return MIN(MIN(x - 80, 120 - x), MIN(y - 130 + 3 * frame, 170 - y));
+}
+
+static void test_growth(void)
+{
+    g_autoptr(FlFluid) plain = fluid_of("plain"), fire = fluid_of("fire");
+    FlFluid *const both[] = {plain, fire};
+    for (int k = 0; k < 2; k++) {
+        for (int frame = 1; frame < 25; frame++)
+            flow(both[k], rising, frame - 1, frame);
+        const float foot = motion[2 * (160 * SIDE + 100) + 1],
+                    top = motion[2 * (75 * SIDE + 100) + 1];
+        g_assert_cmpfloat(top, <, -2);   // it goes with the outline
+        g_assert_cmpfloat(foot, <, -.5); // and comes in at the foot
+    }
+}
+
+static double resting(double x, double y, int frame)
+{
+    return MAX(20 - hypot(x - 60, y - 60), 30 - hypot(x - 140 + frame, y - 140));
+}
+
+static void test_rest(void)
+{
+    g_autoptr(FlFluid) fluid = fluid_of("smoke");
+    for (int frame = 1; frame < 10; frame++)
+        flow(fluid, resting, frame - 1, frame);
+    for (int y = 45; y < 75; y++)
+        for (int x = 45; x < 75; x++)
+            if (resting(x + .5, y + .5, 9) > 0)
+                g_assert_true(motion[2 * (y * SIDE + x)] == 0 &&
+                              motion[2 * (y * SIDE + x) + 1] == 0);
+}
+
+static double leaping(double x, double y, int frame)
+{
+    return 12 - hypot(x - (frame % 2 ? 40 : 160), y - 100);
+}
+
+static double blinking(double x, double y, int frame)
+{
+    return frame % 3 == 1 ? -9 : 40 - hypot(x - 100, y - 100);
+}
+
+static double empty(double x, double y, int frame)
+{
+    return -9;
+}
+
+static double full(double x, double y, int frame)
+{
+    return 9;
+}
+
+static double dot(double x, double y, int frame)
+{
+    return 1 - hypot(x - 100, y - 100 - frame);
+}
+
+static double dots(double x, double y, int frame)
+{
+    return ((int)(x + 3 * frame) / 3 * 7 + (int)y / 3 * 13) % 5 == 0 ? 1 : -1;
+}
+
+static double bursting(double x, double y, int frame)
+{
+    return 1 + 30 * (frame % 6) - hypot(x - 100, y - 100);
+}
+
+static double bars(double x, double y, int frame)
+{
+    return fmod(x + 2 * frame, 8) < 3 ? 1 : -1;
+}
+
+/* No outline makes a motion that is not a number where there is fluid, or faster than one. */
+static void test_any(void)
+{
+    static const char *const kinds[] = {"plain", "smoke", "water", "fire", "honey"};
+    static const Shape shapes[] = {leaping, blinking, empty, full, dot, dots, bursting, bars};
+    for (size_t k = 0; k < G_N_ELEMENTS(kinds); k++)
+        for (size_t s = 0; s < G_N_ELEMENTS(shapes); s++) {
+            g_autoptr(FlFluid) fluid = fluid_of(kinds[k]);
+            for (int frame = 1; frame < 12; frame++) {
+                flow(fluid, shapes[s], frame - 1, frame);
+                for (int p = 0; p < SIDE * SIDE; p++)
+                    if (!isnan(motion[2 * p]))
+                        g_assert_cmpfloat(hypotf(motion[2 * p], motion[2 * p + 1]), <, 80);
+            }
+        }
+}
+
+static void test_leap(void)
+{
+    g_autoptr(FlFluid) fluid = fluid_of("plain");
+    for (int frame = 1; frame < 4; frame++) {
+        flow(fluid, leaping, frame - 1, frame);
+        g_assert_true(isnan(motion[2 * (100 * SIDE + (frame % 2 ? 40 : 160))]));
+    }
+}
+
+/* Fluid that has been somewhere else before flows alike. */
+static void test_anew(void)
+{
+    static float alone[2 * SIDE * SIDE];
+    g_autoptr(FlFluid) fluid = fluid_of("smoke");
+    for (int frame = 1; frame < 6; frame++)
+        flow(fluid, rising, frame - 1, frame);
+    memcpy(alone, motion, sizeof alone);
+    flow(fluid, empty, 0, 0);
+    g_autoptr(FlOutline) none = outline_of(empty, 0), first = outline_of(rising, 0);
+    fl_fluid_step(fluid, none, first);
+    for (int frame = 1; frame < 6; frame++)
+        flow(fluid, rising, frame - 1, frame);
+    g_assert_cmpmem(alone, sizeof alone, motion, sizeof motion);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/fluid/slide", test_slide);
+    g_test_add_func("/fluid/strain", test_strain);
+    g_test_add_func("/fluid/held", test_held);
+    g_test_add_func("/fluid/growth", test_growth);
+    g_test_add_func("/fluid/rest", test_rest);
+    g_test_add_func("/fluid/any", test_any);
+    g_test_add_func("/fluid/leap", test_leap);
+    g_test_add_func("/fluid/anew", test_anew);
+    return g_test_run();
+}
