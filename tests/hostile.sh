@@ -157,6 +157,10 @@ svg x.svg "<filter id='f'><feOffset in='BackgroundImage' dx='9'/></filter>$shape
     fill='#4a9' filter='url(#f)'/>"
 look && says 'BackgroundImage is empty: filters cannot read what is below'
 result $? 'to another filter the background is empty, with a warning'
+svg x.svg "<filter id='f'><feOffset dy='4'/><feGaussianBlur stdDeviation='2'/><feBlend in='SourceGraphic'/></filter>
+    <g filter='url(#f)'>$shape<circle r='20' fill='#4a9'/></g>"
+look && says 'a filter or blend mode makes the 2 shapes of a group one picture'
+result $? 'a shadow that makes a whole figure one region is told'
 {
     for i in $(seq 10000); do printf '[region r%d]\nhold = 2\n' "$i"; done
 } >many.conf

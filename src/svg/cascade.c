@@ -386,8 +386,9 @@ static void animate(Cascade *c, const xmlNode *node, GArray *values, const Style
         g_free(text);
     }
     if (animations)
-        fl_css_animations_apply(animations, c->sheet, c->seconds, &style->units, underlying_value,
-                                take_value, &animated, c->length);
+        fl_css_animations_apply(animations, c->sheet, c->seconds,
+                                &(FlCssContext){&style->units, find_variable, style},
+                                underlying_value, take_value, &animated, c->length);
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */

@@ -176,9 +176,60 @@ static const char *find(const GArray *declarations, const char *property)
     return value;
 }
 
+/** The data of path("M…"), to be interpolated; other values stay. To be freed. */
+static char *plain_path(const char *value)
+{
+    g_autofree char *name = NULL, *arguments = NULL;
+    char *data = fl_css_call(value, &name, &arguments) && strcmp(name, "path") == 0
+                     ? fl_css_string_or_url(arguments)
+                     : NULL;
+    return data ? data : g_strdup(value);
+}
+
+static char *between_paths(const char *from, const char *to, double q)
+{
+    g_autofree char *a = plain_path(from), *b = plain_path(to), *data = fl_interpolate(a, b, q);
+    return g_strdup_printf("path(\"%s\")", data ? data : q < .5 ? a : b);
+}
+
+/** A value of translate, rotate or scale; for "none" the other one with numbers that change
+ * nothing. To be freed. */
+static char *one_transform(const char *value, const char *other, const char *neutral)
+{
+    GString *text = g_string_new(NULL);
+    if (*value && strcmp(value, "none") != 0)
+        return g_string_free(g_string_assign(text, value), FALSE);
+    while (*other) {
+        char *end = (char *)other;
+        if (!g_ascii_isspace(*other))
+            g_ascii_strtod(other, &end);
+        if (end > other)
+            g_string_append(text, neutral);
+        else
+            g_string_append_c(text, *end++);
+        other = end;
+    }
+    return g_string_free(text, FALSE);
+}
+
+static char *between_transforms(const char *property, const char *from, const char *to, double q)
+{
+    const char *neutral = strcmp(property, "scale") == 0 ? "1" : "0";
+    g_autofree char *a = one_transform(from, to, neutral), *b = one_transform(to, from, neutral);
+    return fl_interpolate(a, b, q);
+}
+
+/** A value with its variables put in; to be freed. */
+static char *substituted(const char *value, const FlCssContext *context)
+{
+    char *text =
+        strstr(value, "var(") ? fl_css_substitute(value, context->variable, context->data) : NULL;
+    return text ? g_strstrip(text) : g_strdup(value);
+}
+
 /** A value between those of the keyframes around a progress. */
 static char *between(const GArray *frames, const char *property, double p, const char *timing,
-                     const char *underlying, const FlCssUnits *units)
+                     const char *underlying, const FlCssContext *context)
 {
     const char *from = underlying, *to = underlying;
     double start = 0, end = 1;
@@ -198,12 +249,19 @@ static char *between(const GArray *frames, const char *property, double p, const
             has_end = true;
         }
     }
+    g_autofree char *own_from = substituted(from, context), *own_to = substituted(to, context);
+    from = own_from, to = own_to;
     if (!has_end && start >= 1)
         return g_strdup(from);
     const double q = end > start ? fl_css_ease(timing, (p - start) / (end - start)) : 0;
     char *text = NULL;
     if (strcmp(property, "transform") == 0)
-        text = fl_interpolate_transform(from, to, q, units);
+        text = fl_interpolate_transform(from, to, q, context->units);
+    else if (strcmp(property, "d") == 0)
+        text = between_paths(from, to, q);
+    else if (strcmp(property, "translate") == 0 || strcmp(property, "rotate") == 0 ||
+             strcmp(property, "scale") == 0)
+        text = between_transforms(property, from, to, q);
     else if (strcmp(property, "visibility") == 0 && q > 0 && q < 1)
         text = g_strdup(strcmp(from, "visible") == 0 ? from : to);
     else if (*from && *to && strncmp(property, "--", 2) != 0)
@@ -227,8 +285,9 @@ static GPtrArray *properties_of(const GArray *frames)
 }
 
 void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet *sheet,
-                             double seconds, const FlCssUnits *units, FlCssUnderlying *underlying,
-                             FlCssTake *take, void *data, FlFilmLength *length)
+                             double seconds, const FlCssContext *context,
+                             FlCssUnderlying *underlying, FlCssTake *take, void *data,
+                             FlFilmLength *length)
 {
     for (int i = 0; animations->list[NAME] && animations->list[NAME][i]; i++) {
         g_autofree char *plain = fl_css_string_or_url(animations->list[NAME][i]);
@@ -245,7 +304,7 @@ void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet
         for (guint k = 0; k < properties->len; k++) {
             const char *property = properties->pdata[k], *base = underlying(data, property);
             char *value =
-                between(frames, property, p, longhand(animations, TIMING, i), base, units);
+                between(frames, property, p, longhand(animations, TIMING, i), base, context);
             if (strcmp(longhand(animations, COMPOSITION, i), "add") == 0 &&
                 strcmp(property, "transform") == 0) {
                 char *sum = g_strconcat(strcmp(base, "none") == 0 ? "" : base, " ", value, NULL);

@@ -59,7 +59,7 @@ static const char *read_call(const char *s, Call *call)
 
 static bool is_called(const Call *call, const char *name)
 {
-    return strlen(name) == call->length && strncmp(name, call->name, call->length) == 0;
+    return strlen(name) == call->length && g_ascii_strncasecmp(name, call->name, call->length) == 0;
 }
 
 static double tangent(double degrees)

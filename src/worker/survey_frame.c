@@ -159,6 +159,22 @@ static char *isolated_groups(const FlFrameProbe *f, const FlSurveyFrame *frame)
     return g_string_free(groups, groups->len == 0);
 }
 
+/** Tells which groups are one region for their filter or blend mode alone. */
+static void warn_of_units(const FlFrameProbe *f, const Survey *s)
+{
+    const GArray *units = fl_svg_leaves(f->svg)->unit;
+    for (guint i = 0; i < units->len; i++) {
+        const FlGroupUnit *unit = &g_array_index(units, FlGroupUnit, i);
+        const bool named = !g_str_has_prefix(unit->leaf.id, FL_GROUP_ID);
+        if (unit->inseparable && unit->n > 1)
+            fl_warnings_add(s->warnings, s->request->file, s->request->number,
+                            named ? unit->leaf.id : NULL,
+                            "a filter or blend mode makes the %d shapes of a group one picture; "
+                            "without it each is painted",
+                            unit->n);
+    }
+}
+
 /** Probes a frame, again for each group that becomes one leaf. */
 static bool scan_frame(Survey *s, FlFrameProbe *f, GError **error)
 {
@@ -195,6 +211,7 @@ static bool scan_frame(Survey *s, FlFrameProbe *f, GError **error)
         else if (fl_self_check_has_hard_masks(f->check))
             fl_warnings_add(warnings, file, number, NULL,
                             "shapes that overlap below a mask have a harder edge there");
+        warn_of_units(f, s);
         return true;
     }
 }
