@@ -95,7 +95,7 @@ static bool find_mark(const Front *front, const FlWetSheet *sheet, size_t p, flo
                            (1 - fl_ease(7 * px, 14 * px, depth));
     mark->edge = CLAMP(MIN(reach / MAX(style->soft * f, 1.1f * px), path), -2, 3);
     mark->density = strength * dense;
-    mark->line = strength * style->line * (1 - dense) * fl_ease(0.3f, 2, f / px);
+    mark->line = style->line * (1 - dense) / dense * fl_ease(0.3f, 2, f / px);
     memcpy(mark->ink, point->ink, sizeof mark->ink);
     return mark->density > 0.004f && mark->edge > -2;
 }

@@ -198,12 +198,12 @@ void fl_wet_sheet_wet(FlWetSheet *sheet, const FlFrontStyle *style, float frames
         FlWetCell *cell = cell_at(sheet, mark->at);
         const float more = share * (mark->density - cell->front);
         if (cell->front <= 0)
-            cell->edge = -1, cell->line = 0;
+            cell->edge = -1;
         cell->edge += share * MAX(mark->edge - cell->edge, 0);
-        cell->line += share * MAX(mark->line - cell->line, 0);
         if (more <= 0)
             continue;
         add_ink(cell, more, mark->ink, style->granulation);
+        cell->line = between(cell->line, mark->line, more / (cell->front + more));
         cell->front += more;
     }
 }
@@ -215,7 +215,7 @@ typedef enum Channel {
     FRONTS, // 1 where there is a front
     FRONT,
     EDGE,
-    LINE,
+    LINE,   // times the front
     STAINS, // 1 where there is a stain
     STAIN,
     FILM,
@@ -264,7 +264,7 @@ static FlColumns read_cells(const FlWetSheet *sheet, int y, float *const *to)
         const float stain = cell->stain + cell->film, paint = stain + cell->front;
         to[FRONTS][x] = cell->front > 0, to[STAINS][x] = stain > 0;
         to[FRONT][x] = cell->front, to[EDGE][x] = cell->front > 0 ? cell->edge : -1;
-        to[LINE][x] = cell->front > 0 ? cell->line : 0;
+        to[LINE][x] = cell->front * cell->line;
         to[STAIN][x] = cell->stain, to[FILM][x] = cell->film;
         to[DEPTH][x] = stain > 0 ? cell->depth : -1;
         to[AGE][x] = stain * cell->age, to[GRANULATION][x] = paint * cell->granulation;

@@ -11,7 +11,7 @@ typedef struct FlFrontMark {
     int32_t at;    // cell of the page
     float density; // 0..1, as dense as the paint
     float edge;    // below 0 the front has not come so far, from 1 on it is whole
-    float line;    // density of its tip
+    float line;    // density of its tip, as a share of its own
     float ink[3];  // its absorbance
 } FlFrontMark;
 
