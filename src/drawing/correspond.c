@@ -367,18 +367,12 @@ static Count *count_leaves(const Work *w)
     return count;
 }
 
-static FlCorrespondence *correspondence_of(int n_leaves, int n_subpaths)
-{
-    FlCorrespondence *out = g_new(FlCorrespondence, 1);
-    *out = (FlCorrespondence){n_leaves, n_subpaths, g_new0(FlLeafMotion, n_leaves + 1),
-                              g_new0(int32_t, n_subpaths + 1)};
-    return out;
-}
-
 FlCorrespondence *fl_correspond(const FlTwoFrames *frames)
 {
     const int n = frames->now->n_leaves;
-    FlCorrespondence *out = correspondence_of(n, frames->now->n_subpaths);
+    FlCorrespondence *out = g_new(FlCorrespondence, 1);
+    *out = (FlCorrespondence){n, g_new0(FlLeafMotion, n + 1),
+                              g_new0(int32_t, frames->now->n_subpaths + 1)};
     g_autofree FlLeafMeasure *before = fl_measure_leaves(frames->before);
     g_autofree FlLeafMeasure *now = fl_measure_leaves(frames->now);
     Work w = {frames, before, now, out};
@@ -399,30 +393,4 @@ void fl_correspondence_free(FlCorrespondence *correspondence)
     g_free(correspondence->leaf);
     g_free(correspondence->shift);
     g_free(correspondence);
-}
-
-uint8_t *fl_correspondence_pack(const FlCorrespondence *correspondence, size_t *bytes)
-{
-    const int32_t n[2] = {correspondence->n, correspondence->n_subpaths};
-    const size_t leaves = n[0] * sizeof *correspondence->leaf;
-    const size_t shifts = n[1] * sizeof *correspondence->shift;
-    *bytes = sizeof n + leaves + shifts;
-    uint8_t *data = g_malloc(*bytes);
-    memcpy(data, n, sizeof n);
-    memcpy(data + sizeof n, correspondence->leaf, leaves);
-    memcpy(data + sizeof n + leaves, correspondence->shift, shifts);
-    return data;
-}
-
-FlCorrespondence *fl_correspondence_unpack(const uint8_t *data, size_t bytes)
-{
-    int32_t n[2];
-    g_assert(bytes >= sizeof n);
-    memcpy(n, data, sizeof n);
-    FlCorrespondence *out = correspondence_of(n[0], n[1]);
-    const size_t leaves = n[0] * sizeof *out->leaf, shifts = n[1] * sizeof *out->shift;
-    g_assert(bytes == sizeof n + leaves + shifts);
-    memcpy(out->leaf, data + sizeof n, leaves);
-    memcpy(out->shift, data + sizeof n + leaves, shifts);
-    return out;
 }

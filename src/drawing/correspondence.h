@@ -21,7 +21,7 @@ typedef struct FlLeafMotion {
 
 /** All leaves of a frame. */
 typedef struct FlCorrespondence {
-    int n, n_subpaths;
+    int n;
     FlLeafMotion *leaf;
     /**
      * By subpath of this frame, where kind is SAME: which segment of the subpath before is its
@@ -47,10 +47,6 @@ typedef struct FlTwoFrames {
 FlCorrespondence *fl_correspond(const FlTwoFrames *frames);
 
 void fl_correspondence_free(FlCorrespondence *correspondence); // NULL is fine
-
-/** The bytes of a correspondence for this process alone, to be freed with g_free(). */
-uint8_t *fl_correspondence_pack(const FlCorrespondence *correspondence, size_t *bytes);
-FlCorrespondence *fl_correspondence_unpack(const uint8_t *data, size_t bytes);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlCorrespondence, fl_correspondence_free)
 

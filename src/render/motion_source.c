@@ -16,25 +16,16 @@ typedef struct Frame {
     FlLeafFill *fill;
 } Frame;
 
-/** The leaves of two frames, paired. */
-typedef struct Step {
-    int references;
-    int before, now;
-    int64_t used;
-    FlCorrespondence *motions;
-} Step;
-
 struct FlMotionSource {
     const FlDrawing *drawing;
     const FlMaskStore *masks;
     bool halved;
-    GMutex lock;     // of what follows
-    FlSpill *spill;  // outlines by frame, then the steps into each frame
-    bool *spilled;   // by frame
-    int *spilled_to; // by frame: the frame from which the step into it starts; -1: no step yet
+    GMutex lock;    // of what follows
+    FlSpill *spill; // outlines by frame
+    bool *spilled;  // by frame
     int64_t clock;
     Frame *frame[KEPT];
-    Step *step[KEPT];
+    GHashTable *motions; // FlCorrespondence of two frames, by before * frames + now
 };
 
 static void frame_unref(Frame *frame)
@@ -46,28 +37,19 @@ static void frame_unref(Frame *frame)
     g_free(frame);
 }
 
-static void step_unref(Step *step)
-{
-    if (!step || --step->references > 0)
-        return;
-    fl_correspondence_free(step->motions);
-    g_free(step);
-}
-
 FlMotionSource *fl_motion_source_new(const FlDrawing *drawing, const FlMaskStore *masks,
                                      bool halved, GError **error)
 {
     const size_t n = (size_t)fl_drawing_frames(drawing);
-    FlSpill *spill = fl_spill_new(2 * n, error);
+    FlSpill *spill = fl_spill_new(n, error);
     if (!spill)
         return NULL;
     FlMotionSource *source = g_new0(FlMotionSource, 1);
     source->drawing = drawing, source->masks = masks, source->spill = spill;
     source->halved = halved;
     source->spilled = g_new0(bool, n + 1);
-    source->spilled_to = g_new(int, n + 1);
-    for (size_t f = 0; f < n; f++)
-        source->spilled_to[f] = -1;
+    source->motions = g_hash_table_new_full(g_int64_hash, g_int64_equal, g_free,
+                                            (GDestroyNotify)fl_correspondence_free);
     g_mutex_init(&source->lock);
     return source;
 }
@@ -76,32 +58,23 @@ void fl_motion_source_free(FlMotionSource *source)
 {
     if (!source)
         return;
-    for (int k = 0; k < KEPT; k++) {
+    for (int k = 0; k < KEPT; k++)
         frame_unref(source->frame[k]);
-        step_unref(source->step[k]);
-    }
     fl_spill_free(source->spill);
     g_free(source->spilled);
-    g_free(source->spilled_to);
+    g_hash_table_unref(source->motions);
     g_mutex_clear(&source->lock);
     g_free(source);
 }
 
-static uint8_t *read_block(const FlMotionSource *source, size_t block, size_t *bytes,
-                           GError **error)
-{
-    *bytes = fl_spill_bytes(source->spill, block);
-    g_autofree uint8_t *data = fl_alloc(*bytes, 1, "the outlines of a frame", error);
-    return data && fl_spill_get(source->spill, block, data, *bytes, error) ? g_steal_pointer(&data)
-                                                                           : NULL;
-}
-
 static FlOutlines *outlines_from_spill(const FlMotionSource *source, int frame, GError **error)
 {
-    size_t bytes;
-    g_autofree uint8_t *data = read_block(source, (size_t)frame, &bytes, error);
-    FlOutlines *outlines = data ? fl_outlines_unpack(data, bytes) : NULL;
-    g_assert(!data || outlines);
+    const size_t bytes = fl_spill_bytes(source->spill, (size_t)frame);
+    g_autofree uint8_t *data = fl_alloc(bytes, 1, "the outlines of a frame", error);
+    if (!data || !fl_spill_get(source->spill, (size_t)frame, data, bytes, error))
+        return NULL;
+    FlOutlines *outlines = fl_outlines_unpack(data, bytes);
+    g_assert(outlines);
     return outlines;
 }
 
@@ -153,54 +126,24 @@ static int side_of(const FlMotionSource *source)
     return source->halved ? fl_half_side(side) : side;
 }
 
-/** Pairs the leaves of two frames, and keeps that for the other regions, which come one by one. */
-static FlCorrespondence *correspond(FlMotionSource *source, const Frame *before, const Frame *now,
-                                    GError **error)
+/** The motion of the leaves from one frame to another, kept for all regions; under the lock. */
+static const FlCorrespondence *motions_of(FlMotionSource *source, const Frame *before,
+                                          const Frame *now)
 {
-    const size_t block = (size_t)(fl_drawing_frames(source->drawing) + now->frame);
-    size_t bytes;
-    if (source->spilled_to[now->frame] == before->frame) {
-        g_autofree uint8_t *kept = read_block(source, block, &bytes, error);
-        return kept ? fl_correspondence_unpack(kept, bytes) : NULL;
+    const int64_t key = (int64_t)before->frame * fl_drawing_frames(source->drawing) + now->frame;
+    FlCorrespondence *motions = g_hash_table_lookup(source->motions, &key);
+    if (!motions) {
+        motions = fl_correspond(&(FlTwoFrames){before->outlines, now->outlines, before->fill,
+                                               now->fill, side_of(source)});
+        g_hash_table_insert(source->motions, g_memdup2(&key, sizeof key), motions);
     }
-    const FlTwoFrames frames = {before->outlines, now->outlines, before->fill, now->fill,
-                                side_of(source)};
-    g_autoptr(FlCorrespondence) motions = fl_correspond(&frames);
-    g_autofree uint8_t *data = fl_correspondence_pack(motions, &bytes);
-    if (!fl_spill_put(source->spill, block, data, bytes, error))
-        return NULL;
-    source->spilled_to[now->frame] = before->frame;
-    return g_steal_pointer(&motions);
+    return motions;
 }
 
-/** The motion of the leaves from one frame to another, to be unref'd; under the lock. */
-static Step *step_of(FlMotionSource *source, const Frame *before, const Frame *now, GError **error)
-{
-    int oldest = 0;
-    for (int k = 0; k < KEPT; k++) {
-        Step *s = source->step[k];
-        if (s && s->before == before->frame && s->now == now->frame) {
-            s->used = ++source->clock;
-            s->references++;
-            return s;
-        }
-        if (!s || (source->step[oldest] && s->used < source->step[oldest]->used))
-            oldest = k;
-    }
-    FlCorrespondence *motions = correspond(source, before, now, error);
-    if (!motions)
-        return NULL;
-    Step *s = g_new0(Step, 1);
-    *s = (Step){2, before->frame, now->frame, ++source->clock, motions};
-    step_unref(source->step[oldest]);
-    source->step[oldest] = s;
-    return s;
-}
-
-/** The frames and the step from which a region's motion is computed. */
+/** The frames from which a region's motion is computed. */
 typedef struct Use {
     Frame *before, *now;
-    Step *step;
+    const FlCorrespondence *motions;
 } Use;
 
 static void release(FlMotionSource *source, const Use *use)
@@ -208,7 +151,6 @@ static void release(FlMotionSource *source, const Use *use)
     g_mutex_lock(&source->lock);
     frame_unref(use->before);
     frame_unref(use->now);
-    step_unref(use->step);
     g_mutex_unlock(&source->lock);
 }
 
@@ -217,9 +159,9 @@ static bool acquire(FlMotionSource *source, int before, int now, Use *use, GErro
     g_mutex_lock(&source->lock);
     use->before = frame_of(source, before, error);
     use->now = use->before ? frame_of(source, now, error) : NULL;
-    use->step = use->now ? step_of(source, use->before, use->now, error) : NULL;
+    use->motions = use->now ? motions_of(source, use->before, use->now) : NULL;
     g_mutex_unlock(&source->lock);
-    return use->step != NULL;
+    return use->motions != NULL;
 }
 
 /** A mask of a region in a part of a frame. */
@@ -260,7 +202,7 @@ static FlMovingRegion moving_of(const FlMotionSource *source, const FlRegionStep
                             .wetness = step->wetness,
                             .before = use->before->outlines,
                             .now = use->now->outlines,
-                            .motions = use->step->motions,
+                            .motions = use->motions,
                             .leaves = leaves};
 }
 
