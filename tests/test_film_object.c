@@ -231,8 +231,8 @@ static void drafts_come_at_once_and_leave_frames_alone(void)
     const FlFilmFrame *draft = fl_film_draft(test->film, 4, &error);
     g_assert_no_error(error);
     g_assert_cmpint(draft->frame, ==, 4);
-    g_assert_cmpint(draft->width, ==, 36);
-    g_assert_cmpint(draft->height, ==, 28);
+    g_assert_cmpint(draft->width, ==, 18);
+    g_assert_cmpint(draft->height, ==, 14);
     g_assert_cmpint(painted(test->film), ==, 2); // as if the film began with it
     g_assert_nonnull(fl_film_draft(test->film, 5, &error));
     g_assert_cmpint(painted(test->film), ==, 4);

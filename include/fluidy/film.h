@@ -115,8 +115,8 @@ typedef struct FlFilmFrame {
 FL_API const FlFilmFrame *fl_film_frame(FlFilm *film, int frame, GError **error);
 
 /**
- * Makes drafts small: px that no side of theirs is longer than; 0: as long as in the frames.
- * Without effect on the frames.
+ * Makes drafts small: px of which no side is longer than the half; 0: half as long as in the
+ * frames. Without effect on the frames.
  */
 FL_API void fl_film_set_draft_side(FlFilm *film, int most_side);
 
@@ -127,7 +127,8 @@ FL_API int fl_film_number(const FlFilm *film, int frame);
 FL_API const FlFilmInfo *fl_film_draft_info(FlFilm *film, GError **error);
 
 /**
- * Drafts a frame, to be seen at once: with detail "draft", and as if the film began with this
+ * Drafts a frame, to be seen at once: with detail "draft", in the half size in which that is
+ * painted, and as if the film began with this
  * frame, unless the one before was drafted last. So it depends on the order of the calls, and later
  * frames follow it. Paint of a loop, whose beginning follows from its end, is painted from there.
  */

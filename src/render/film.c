@@ -240,6 +240,7 @@ static bool follow_options(FlFilm *film, Take *take, GError **error)
     else
         fl_frames_init(&take->frames, plan);
     take->open = true;
+    take->frames.small = take == &film->draft;
     film->stats.n_read += plan->drawing != read;
     if (fl_frames_check(&take->frames, error) && fl_frames_prepare(&take->frames, error))
         return true;
@@ -302,8 +303,10 @@ static bool make_frame(FlFilm *film, Take *take, int frame, GError **error)
         !fl_frames_make(frames, frame, -1, &film->composite, &paint_s, error))
         return false;
     film->stats.n_composed++;
-    (void)give(film, frames->plan, frame, frames->plan->width, frames->plan->height,
-               film->composite.rgba);
+    const FlPlan *plan = frames->plan;
+    const bool half = plan->half && frames->small;
+    (void)give(film, plan, frame, half ? fl_drawing_width(plan->drawing) : plan->width,
+               half ? fl_drawing_height(plan->drawing) : plan->height, film->composite.rgba);
     return true;
 }
 

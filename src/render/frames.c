@@ -255,7 +255,8 @@ static bool make_frame(FlFrames *frames, int frame, int next, FlComposite *compo
     const FlComposeInput input = compose_input(frames, shown);
     const bool made =
         fl_composite_init(composite, &input, shown, draws, plan->format->takes_16, error) &&
-        (!plan->half || fl_composite_enlarge(composite, plan->width, plan->height, error));
+        (!plan->half || frames->small ||
+         fl_composite_enlarge(composite, plan->width, plan->height, error));
     trim(plan);
     return made;
 }

@@ -18,6 +18,7 @@ typedef struct FlFrames {
     FlWet *wet;                // the wet paper, which paint stains; NULL: paint leaves no stains
     FlMotionSource *motion;    // motion source of `wet`, if the painters have no motion source
     FlReport *report;          // borrowed: inspects each picture; NULL: no report
+    bool small;                // frames are as small as they are painted, not enlarged
     bool beside;               // drawing and writing, which wait for the disk, run beside painting
     FlTask drawing;            // runs beside the painting
     int marked;                // the last frame in the wet paper; -1: no frame yet
