@@ -16,7 +16,7 @@ echo "<svg xmlns='http://www.w3.org/2000/svg' width='1000' height='300'>" \
 
 # size WIDTH ARGUMENT...: of the texture of a wash, in 1/100000 of the page.
 size() {
-    "$program" wash -s "$bundled/05" --paper none -q -W "$1" -o "wash_$1_%d.png" -y "${@:2}" >out 2>err &&
+    "$program" wash -s "$bundled/09" --paper none --wash 0 -q -W "$1" -o "wash_$1_%d.png" -y "${@:2}" >out 2>err &&
         "$texture" "wash_$1_1.png" | tr -d .
 }
 small=$(size 500) large=$(size 1000) pixels=$(size 500 --style-by-page off)
@@ -26,6 +26,7 @@ result $? "texture has one size on the page: $small and $large; with the pixels'
 half=$(size 1000 --style-scale .5)
 [ $((100 * half)) -lt $((80 * large)) ]
 result $? "--style-scale goes on from there: $half"
+rm -rf cache # with the style at twice its size
 
 # page_of FOLDER ARGUMENT...: paints a page for which the style is wanted at twice its size
 page_of() {

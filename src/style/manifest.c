@@ -31,6 +31,7 @@ static const struct Key {
     {"marks", MARKS, offsetof(FlStyle, marks)},
     {"granulation", NUMBER, offsetof(FlStyle, granulation), -1, 1},
     {"fluid", FLUID, offsetof(FlStyle, fluid)},
+    {"melt", NUMBER, offsetof(FlStyle, melt), 0, 1},
     {"made-by", TEXT, offsetof(FlStyle, made_by)},
     {"missing-orientations", TEXT, offsetof(FlStyle, missing_orientations)},
     {"paper", COLOUR, offsetof(FlStyle, paper), 0, 0, FL_GUESS_PAPER},
@@ -214,6 +215,9 @@ char *fl_manifest_text(const FlStyle *style)
     if (style->granulation != FL_GRANULATION)
         g_string_append_printf(text, "granulation = %s\n",
                                g_ascii_formatd(number, sizeof number, "%.4g", style->granulation));
+    if (style->melt > 0)
+        g_string_append_printf(text, "melt = %s\n",
+                               g_ascii_formatd(number, sizeof number, "%.4g", style->melt));
     if (style->medium != FL_MEDIUM_AUTO)
         g_string_append_printf(text, "medium = %s\n", fl_medium_word(style->medium));
     if (style->marks != FL_MARKS_AUTO)

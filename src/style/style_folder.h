@@ -59,6 +59,7 @@ typedef struct FlStyle {
     FlFluidKind fluid; // that carries its paint; FL_FLUID_STYLE: none is given
     FlFrontStyle front;
     FlWashStyle wash;
+    float melt;       // 0..1: 1 if its pieces melt into each other when they are put together
     float smoothness; // of its recording: see fl_style_smoothness()
     uint8_t *rgb;     // n_frames * height * width * 3, sRGB
     uint8_t *mask;    // n_frames * height * width, coverage 0..255

@@ -404,7 +404,7 @@ static FlExemplar *make_exemplar(const FlStyle *style, const FlStyle *full, cons
     g_autoptr(FlExemplarFrames) frames = g_new0(FlExemplarFrames, 1);
     SegmentCounts counts = {{0}};
     exemplar->border_px = params->border > 0 ? params->border : style->border_px;
-    exemplar->smoothness = style->smoothness;
+    exemplar->smoothness = style->smoothness, exemplar->melt = style->melt;
     exemplar->wets = style->medium == FL_MEDIUM_OPAQUE || style->medium == FL_MEDIUM_BODY
                          ? 0
                          : style->front.width;

@@ -17,6 +17,7 @@ typedef struct FlExemplar {
     float bare;       // sum of channels, 0 … 3: nearer to the paper is no paint of the interior
     float ext_scale;  // 1 / the largest extent, 1/px
     float smoothness; // of the style
+    float melt;       // of the style
     float wets;       // paleness of its fresh paint, 0 … 1; 0: not a wet paint
     uint8_t paper[3];
     bool cut_out; // as FlStyle's: the mask is the alpha of colours over the paper

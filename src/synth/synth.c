@@ -136,7 +136,7 @@ static bool dry(FlSynth *synth, const FlGuides *guides, FlRect rect, FlCarried *
 /* The picture in twice the size of the field. */
 static void enlarge(const FlSynth *synth, uint8_t *rgb)
 {
-    const FlEnlarged enlarged = {&synth->kernels, synth->params->vote_sharpness,
+    const FlEnlarged enlarged = {&synth->kernels, fl_synth_sharpness(synth),
                                  synth->last.painted_width, synth->last.painted_height, rgb};
     fl_enlarge(fl_enlargement_level(synth->exemplar->enlargement), &synth->nnf[0],
                &synth->target.level[0].blocks, synth->target.rect, &enlarged);

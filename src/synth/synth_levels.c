@@ -18,6 +18,11 @@ int fl_synth_finest_searched(const FlSynth *synth)
     return synth->params->finest_rounds == 0 && synth->n_levels > 1 ? 1 : 0;
 }
 
+float fl_synth_sharpness(const FlSynth *synth)
+{
+    return 1 + (synth->params->vote_sharpness - 1) * (1 - synth->exemplar->melt);
+}
+
 /* The previous field in a level's size: `shifted`, or `down`, which is made. *previous stays NULL
  * without a previous field. */
 static bool previous_of_level(const FlSynth *synth, const FlNnf *shifted, int l, FlNnf *down,
@@ -53,8 +58,8 @@ static bool make_temporal_level(FlSynth *synth, const FlNnf *shifted, int l, GEr
     g_autofree uint8_t *voted = fl_alloc(pixels, 1, "a temporal guide", error);
     if (!voted)
         return false;
-    fl_vote(shifted, NULL, &synth->exemplar->level[l], &synth->kernels,
-            synth->params->vote_sharpness, 3, target->temporal, voted);
+    fl_vote(shifted, NULL, &synth->exemplar->level[l], &synth->kernels, fl_synth_sharpness(synth),
+            3, target->temporal, voted);
     const FlTemporalTrust trust = trust_of(synth);
 #pragma omp parallel for schedule(dynamic, 4096)
     for (size_t p = 0; p < pixels; p++)
@@ -93,8 +98,8 @@ static double mean_energy(const FlSearch *search)
 static void vote(FlSynth *synth, const FlSearch *search, FlTargetLevel *target)
 {
     gint64 time = g_get_monotonic_time();
-    fl_vote(search->nnf, &target->blocks, search->level, search->kernels,
-            search->params->vote_sharpness, 3, target->colour, NULL);
+    fl_vote(search->nnf, &target->blocks, search->level, search->kernels, fl_synth_sharpness(synth),
+            3, target->colour, NULL);
     synth->seconds_vote += fl_lap(&time);
 }
 
@@ -272,7 +277,9 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
                        .target = target,
                        .params = params,
                        .scale = &synth->scale,
-                       .w_coh = (double)params->w_coh * (1 - (double)synth->exemplar->smoothness),
+                       .w_coh =
+                           (double)params->w_coh *
+                           (1 - (double)MAX(synth->exemplar->smoothness, synth->exemplar->melt)),
                        .kernels = &synth->kernels,
                        .nnf = &synth->nnf[l],
                        .cost = cost,

@@ -9,6 +9,9 @@
  * level's field, enlarged. */
 int fl_synth_finest_searched(const FlSynth *synth);
 
+/** The sharpness of votes: that of the parameters, less for a style that melts. */
+float fl_synth_sharpness(const FlSynth *synth);
+
 /**
  * Makes T_temp and m(q) [F21 §3.4] on every level that is searched, and finds what is kept.
  * carried: the last frame's field in the size of the target, shifted in time. FL_ERROR_NO_MEMORY.

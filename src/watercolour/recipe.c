@@ -120,6 +120,7 @@ static void read_recipe(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_float(lines, "border", 1, 1000, &recipe->border);
     fl_keylines_float(lines, "scale", 0.01f, 100, &recipe->scale);
     fl_keylines_float(lines, "granulation", -1, 1, &recipe->granulation);
+    fl_keylines_float(lines, "melt", 0, 1, &recipe->melt);
     fl_keylines_float(lines, "mask-threshold", 1e-4f, 10, &recipe->mask_threshold);
     fl_keylines_float(lines, "mask-blur", 0, 50, &recipe->mask_blur);
     fl_keylines_float(lines, "mask-margin", 0, 50, &recipe->mask_margin);

@@ -88,6 +88,7 @@ typedef struct FlRecipe {
     int oversample;            // cells per px, 1..3
     float fps, border, scale;
     float granulation;     // as of fl_granulate()
+    float melt;            // as of FlStyle
     int steps[2], warm_up; // steps before the second and before the last frame; before the first
     uint64_t seed;
     float mask_threshold, mask_margin; // least thickness of paint; bare margin, px

@@ -71,6 +71,7 @@ static FlStyle *new_style(const FlRecipe *recipe, int size, const char *recipe_p
         .border_px = recipe->border * (float)size,
         .scale = recipe->scale / (float)size,
         .granulation = recipe->granulation,
+        .melt = recipe->melt,
         .front = recipe->front,
         .wash = recipe->wash,
         .medium = fl_medium_of_word(recipe->medium),
