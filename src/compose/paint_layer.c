@@ -148,8 +148,8 @@ static bool lay_marks(const FlLayer *layer, const FlComposeInput *input,
                         layer->coverage, amounts, error);
 }
 
-/* Colours a layer by its amounts of paint, once marks, wash and the paper's grain are in them; not
- * in paint that keeps the exemplar's own colours. */
+/* Colours a layer by its amounts of paint, once wash and the paper's grain are in them; not in
+ * paint that keeps the exemplar's own colours. */
 static bool colour_layer(FlLayer *layer, const FlLayerSources *sources, int r,
                          const FlPaintedRegion *painted, FlColouring *colouring, int16_t *amounts,
                          GError **error)
@@ -158,8 +158,6 @@ static bool colour_layer(FlLayer *layer, const FlLayerSources *sources, int r,
     const FlPaintedPart part = part_of(painted);
     const FlWash *wash = fl_wash_of_draw(sources->washes, r);
     g_autofree int8_t *play = NULL;
-    if (!lay_marks(layer, sources->input, painted, amounts, error))
-        return false;
     if (wash) {
         if (!(play = fl_alloc_unset(fl_rect_pixels(layer->area.box), 1, "a layer", error)))
             return false;
@@ -186,8 +184,8 @@ static int darkness_of(const FlColouring *colouring)
     return 255 * MAX(paper - luma(colouring->fill), 0) / paper;
 }
 
-/* Knockout is of the amounts before the paper's grain, which would otherwise punch holes into the
- * layer. */
+/* Knockout is of the amounts with the marks, between which the paint below shows, and before the
+ * paper's grain, which would otherwise punch holes into the layer. */
 static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
                         const FlPaintedRegion *painted, int exposure, GError **error)
 {
@@ -197,7 +195,7 @@ static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
     g_autofree int16_t *amounts = amounts_of(sources, r, painted, exposure, error);
     uint8_t *knockout = amounts ? fl_alloc_scratch(fl_rect_pixels(box), 1, "a layer", error) : NULL;
     layer->knockout = knockout;
-    if (!knockout)
+    if (!knockout || !lay_marks(layer, sources->input, painted, amounts, error))
         return false;
     const FlDrawing *drawing = sources->input->drawing;
     const int border_px = (int)(painted->style->border_px + 0.5f);
@@ -254,7 +252,8 @@ static bool paint_cut_out(FlLayer *layer, const FlLayerSources *sources, int r,
     const bool keep = colouring.tint == FL_TINT_KEEP;
     fl_colourise_amounts(painted->style->ink, keep ? FL_EXPOSURE_ONE : exposure, &part,
                          layer->coverage, &layer->area, amounts);
-    return colour_layer(layer, sources, r, painted, &colouring, amounts, error);
+    return lay_marks(layer, sources->input, painted, amounts, error) &&
+           colour_layer(layer, sources, r, painted, &colouring, amounts, error);
 }
 
 void fl_layer_begin(FlLayer *layer, const FlLayerSources *sources, int r)
