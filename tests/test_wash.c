@@ -1,5 +1,6 @@
 /* Washes ride with their figures, are one where shapes of a fill touch, and keep the fill. */
 #include "base/colour_difference.h"
+#include "compose/gaps.h"
 #include "compose/ink.h"
 #include "compose/pigments.h"
 #include "compose/wash.h"
@@ -179,14 +180,14 @@ static void it_rides_with_its_figure(void)
     char *frames[FRAMES + 1] = {NULL};
     for (int t = 0; t < FRAMES; t++)
         frames[t] = g_strdup_printf(BLOB " id='b' transform='translate(%.2f %.2f) rotate(%.2f)'/>",
-                                    120 + 7.0 * t, 150 + .7 * t, -1.0 * t);
+                                    120 + 7.0 * t, 150 + .7 * t, -.5 * t);
     g_autoptr(Scratch) folder = scratch_make();
     g_autoptr(FlDrawing) drawing = open_film(folder, (const char *const *)frames);
     const FlWashStyle lines = {.wash = 1, .passes = 1, .tide = 1};
     g_autofree Tones *first = lay_frame(drawing, 0, &lines);
     for (int t = 1; t < FRAMES; t += 11) {
         g_autofree Tones *now = lay_frame(drawing, t, &lines);
-        const double along = likeness(first, now, 7.0 * t, .7 * t, -1.0 * t);
+        const double along = likeness(first, now, 7.0 * t, .7 * t, -.5 * t);
         const double page = likeness(first, now, 0, 0, 0);
         g_test_message("frame %d: correlation %.3f along the figure, %.3f on the page", t, along,
                        page);
@@ -340,6 +341,65 @@ static void threads_and_parts_do_not_matter(void)
     g_assert_cmpmem(one->play, sizeof one->play, three->play, sizeof three->play);
 }
 
+/* ---- gaps ------------------------------------------------------------------------------------ */
+
+#define BOX_PX 80
+
+/* A square of full paint at (x, 40), whose edges are off. */
+static FlLayer square_off(int x, float strength)
+{
+    enum { N = BOX_PX * BOX_PX };
+    uint8_t *coverage = malloc(N);
+    FlLayer layer = {.area = {{x, 40, BOX_PX, BOX_PX}, NULL},
+                     .coverage = coverage,
+                     .owns_coverage = true,
+                     .knockout = malloc(N),
+                     .rgba = malloc(4 * N),
+                     .alpha = 255};
+    memset(coverage, 255, N);
+    memset(layer.knockout, 255, N);
+    memset(layer.rgba, 200, 4 * N);
+    const FlGaps gaps = {strength, 7, {.x = (float)x + 40, .y = 80, .cosine = 1}, 1};
+    g_assert_true(fl_layer_open_gaps(&layer, &gaps, (FlRect){0, 0, W, H}, NULL));
+    return layer;
+}
+
+static void layer_free(FlLayer *layer)
+{
+    free(layer->rgba);
+    free(layer->knockout);
+    free((uint8_t *)layer->coverage);
+}
+
+static void edges_are_off_by_a_hair(void)
+{
+    FlLayer layer = square_off(60, 1), moved = square_off(97, 1), same = square_off(60, 0);
+    const FlRect box = layer.area.box, own = {60, 40, BOX_PX, BOX_PX};
+    int beyond = 0, bare = 0;
+    g_assert_cmpint(same.area.box.width, ==, BOX_PX);
+    for (int y = 0; y < box.height; y++)
+        for (int x = 0; x < box.width; x++) {
+            const size_t p = (size_t)y * (size_t)box.width + (size_t)x;
+            const FlRect here = {box.x + x, box.y + y, 1, 1};
+            const bool inside = fl_rect_meet(here, own);
+            const bool deep = fl_rect_is_inside(fl_rect_grown(here, 2, (FlRect){0, 0, W, H}), own);
+            g_assert_true(!deep || layer.coverage[p] == 255);
+            bare += inside && layer.coverage[p] < 128;
+            beyond += !inside && layer.coverage[p] > 128;
+            g_assert_true(inside || layer.knockout[p] == 0); // what it overlaps shows through
+            g_assert_true(layer.coverage[p] == 0 || layer.rgba[4 * p] == 200);
+        }
+    g_test_message("%d px are bare, %d overlap", bare, beyond);
+    g_assert_cmpint(bare, >, 20);
+    g_assert_cmpint(beyond, >, 20);
+    g_assert_cmpint(moved.area.box.x, ==, box.x + 37);
+    const int pixels = box.width * box.height;
+    g_assert_cmpmem(layer.coverage, pixels, moved.coverage, pixels);
+    layer_free(&layer);
+    layer_free(&moved);
+    layer_free(&same);
+}
+
 /* ---- pigments -------------------------------------------------------------------------------- */
 
 static void pigments_mix_to_the_fill(void)
@@ -396,6 +456,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/parts-that-move-apart-are-mixed", parts_that_move_apart_are_mixed);
     g_test_add_func("/wash/dots-and-lines-have-none", dots_and_lines_have_none);
     g_test_add_func("/wash/threads-and-parts-do-not-matter", threads_and_parts_do_not_matter);
+    g_test_add_func("/gaps/edges-are-off-by-a-hair", edges_are_off_by_a_hair);
     g_test_add_func("/pigments/they-mix-to-the-fill", pigments_mix_to_the_fill);
     g_test_add_func("/pigments/the-palette-is-what-paint-can-be", the_palette_is_what_paint_can_be);
     g_test_add_func("/pigments/the-hue-turns-and-the-light-stays",

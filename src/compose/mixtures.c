@@ -144,11 +144,11 @@ static void find_turn(FlMixture *mixture)
 static FlMixture *search(const uint8_t fill[3])
 {
     const float level[3] = {fill[0], fill[1], fill[2]};
-    const Candidate *best = NULL;
     const FlPigment *pigments;
     float lab[3], least = INFINITY, mixed[3];
     if (!candidates)
         fill_candidates();
+    const Candidate *best = candidates;
     fl_pigments(&pigments);
     fl_lab(level, lab);
     for (int i = 0; i < n_candidates; i++) {

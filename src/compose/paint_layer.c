@@ -5,6 +5,7 @@
 #include "base/rng.h"
 #include "compose/colourise.h"
 #include "compose/dry_marks.h"
+#include "compose/gaps.h"
 #include "compose/granulation.h"
 #include "compose/knockout.h"
 #include "compose/pigments.h"
@@ -203,7 +204,13 @@ static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
                      fl_drawing_height(drawing), MAX(border_px, 1), asked_medium(painted),
                      darkness_of(&colouring), knockout, error))
         return false;
-    return colour_layer(layer, sources, r, painted, &colouring, amounts, error);
+    const FlGaps gaps = {.strength = (float)painted->settings->gaps,
+                         .key = fl_key(sources->input->seed, g_str_hash(painted->name)),
+                         .anchor = painted->anchor,
+                         .scale = sources->input->paper_px};
+    const FlRect page = {0, 0, sources->input->width, sources->input->height};
+    return colour_layer(layer, sources, r, painted, &colouring, amounts, error) &&
+           fl_layer_open_gaps(layer, &gaps, page, error);
 }
 
 /* Paint with alpha of its own fades out by that, beyond its shape: the layer of a grown one,

@@ -22,13 +22,14 @@ typedef enum FlWashPlane {
 /** The wash of all shapes of one fill in a frame: they are filled in one go, so that where they
  * touch it is one. */
 typedef struct FlWash {
-    FlWashStyle style;            // its strengths
-    uint64_t key;                 // of the film's seed and the fill
-    float brush_px;               // width of a pass, px of the page
-    FlRect box;                   // px of the frame
-    int step;                     // px of the frame from point to point
-    int width, height;            // points; the first is at the corner of the box
-    float *plane[FL_WASH_PLANES]; // of width * height
+    const FlPaintedRegion *painted; // the first of its regions; borrowed
+    FlWashStyle style;              // its strengths
+    uint64_t key;                   // of the film's seed and the fill
+    float brush_px;                 // width of a pass, px of the page
+    FlRect box;                     // px of the frame
+    int step;                       // px of the frame from point to point
+    int width, height;              // points; the first is at the corner of the box
+    float *plane[FL_WASH_PLANES];   // of width * height
 } FlWash;
 
 /** The washes of a frame. */

@@ -85,7 +85,7 @@ static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
     return style->wash *
            (slow[FL_WASH_TONE] +
             1.4f * style->passes * slow[FL_WASH_LINES] *
-                (.15f * load * (.5f + .5f * free) + .24f * ridge * free) +
+                (.10f * load * (.5f + .5f * free) + .24f * ridge * free) +
             1.2f * style->tide *
                 (.36f * tide - .14f * slow[FL_WASH_TIDES] * smooth(slow[FL_WASH_TIDE] / 34)) +
             style->blooms * bloom_at(slow));

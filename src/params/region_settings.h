@@ -96,6 +96,7 @@ typedef struct FlRegionSettings {
     double marks_angle; // direction of the strokes, degrees; 90: down
     double front;       // fronts on the paper ahead of what moves, 0..2
     double stain;       // stains behind the front, 0..1
+    double gaps;        // how far edges are off, 0..1
     FlEdges edges;
     FlLine line;   // of a region that is not painted
     int line_boil; // frames until it is drawn anew; 0: never

@@ -1,0 +1,86 @@
+/* A wash in the making; private to the files of washes. */
+#ifndef FLUIDY_COMPOSE_WASH_FIELD_H
+#define FLUIDY_COMPOSE_WASH_FIELD_H
+
+#include "compose/wash.h"
+
+/** A region, and what moves as one in it: all of it, or a limb. */
+typedef struct FlWashPart {
+    int region;
+    FlAnchor anchor;
+    const FlLimb *limb; // NULL: all of it
+    float *weight;      // at each point, how much of the wash is this part's
+} FlWashPart;
+
+#define FL_WASH_ROOMS 5
+
+/** A wash in the making. Lengths are px of the page, unless said. */
+typedef struct FlWashField {
+    FlWash *wash;
+    const FlComposeInput *input;
+    float size;     // of its shapes through the film
+    float light[2]; // unit vector to the side of the shadow
+    FlWashPart *part;
+    int n_parts;
+    float *planes; // of what follows and of the parts' weights
+    float *mask;   // coverage at each point, as if no other shape lay over it
+    float *side;   // -1 light side .. 1 shadow side
+    float *around; // coverage of what is around each point, by the size of the shapes
+    float *room[FL_WASH_ROOMS];
+    float *turned; // and as much again: of fl_field_blur()
+} FlWashField;
+
+static inline size_t fl_wash_points(const FlWash *wash)
+{
+    return (size_t)wash->width * (size_t)wash->height;
+}
+
+static inline float fl_clamp(float x, float low, float high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+static inline float fl_smooth(float x)
+{
+    const float t = fl_clamp(x, 0, 1);
+    return t * t * (3 - 2 * t);
+}
+
+#define FL_WASH_NEAR 4 // points beyond a shape at which its wash is known
+#define FL_WASH_JOINT_PX                                                                           \
+    12 // half the width over which the washes of parts that move apart are mixed
+
+bool fl_field_alloc(FlWashField *field, GError **error);
+void fl_field_clear(FlWashField *field);
+
+/** Blurs a plane of all points by sigma_px of the page. */
+void fl_field_blur(const FlWashField *field, float *plane, float sigma_px);
+
+/** The mean of a plane within the shapes around each point: nothing leaks in over the contour.
+ * around: the mask, as blurred. */
+void fl_field_blur_inside(const FlWashField *field, float *plane, float sigma_px,
+                          const float *around);
+
+/** The masks of the draws of wash w, and of its regions as far as the others leave them in sight.
+ */
+void fl_field_fill_masks(const FlWashField *field, const FlWashes *washes, int w,
+                         const FlDrawList *draws);
+
+/** Divides the points of a region among its limbs, by how far each point is from them. */
+void fl_field_divide(const FlWashField *field);
+
+/** Finds FlWashField.side: the place of each point along the light, from the middle of what
+ * surrounds it, by the extent of that: as of the shape itself if it is small, as of its margin if
+ * it is large. */
+void fl_field_find_side(const FlWashField *field);
+
+/** Wet paint gathers inside contours that face the shadow. The page's edge is no contour. */
+void fl_field_find_pools(const FlWashField *field, float *pool);
+
+/** A share at each point by which it lies in something large: lines and dots have no wash. */
+void fl_field_find_breadth(const FlWashField *field, float *breadth);
+
+/** Fills the planes of the wash with noise at the places where its parts were first seen. */
+void fl_field_fill_noise(const FlWashField *field);
+
+#endif

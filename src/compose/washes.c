@@ -1,0 +1,199 @@
+#include "base/parallel_error.h"
+#include "base/rng.h"
+#include "compose/wash_field.h"
+
+#include <math.h>
+#include <string.h>
+
+#define STEP_PX 4 // px of the page between points
+
+/* ---- a wash ---------------------------------------------------------------------------------- */
+
+/* Takes the mean of what surrounds each point away, so that the fill stays the fill. */
+static void centre(const FlWashField *field, float *plane)
+{
+    float *mean = field->room[0];
+    memcpy(mean, plane, fl_wash_points(field->wash) * sizeof *mean);
+    fl_field_blur_inside(field, mean, field->size, field->around);
+    for (size_t i = 0; i < fl_wash_points(field->wash); i++)
+        plane[i] -= mean[i];
+}
+
+static void put_together(const FlWashField *field)
+{
+    const FlWash *wash = field->wash;
+    float *breadth = field->room[3], *pool = field->room[2];
+    float *tone = wash->plane[FL_WASH_TONE], *hue = wash->plane[FL_WASH_HUE];
+    const size_t n = fl_wash_points(wash);
+    for (size_t i = 0; i < n; i++) {
+        const float slow = tone[i];
+        tone[i] = .28f * fl_clamp(field->side[i] + .45f * slow, -1.3f, 1.3f) + .13f * slow;
+        hue[i] = 1.25f * hue[i] + .45f * field->side[i];
+    }
+    centre(field, tone);
+    centre(field, hue);
+    fl_field_find_breadth(field, breadth);
+    memset(pool, 0, n * sizeof *pool);
+    fl_field_find_pools(field, pool);
+    const float quiet = 1 - .45f * fl_smooth(field->size / 300 - 1); // a ground is laid with care
+    for (size_t i = 0; i < n; i++) {
+        breadth[i] *= quiet;
+        tone[i] = breadth[i] * (tone[i] + .38f * wash->style.pool * pool[i]);
+        hue[i] *= .3f + .7f * breadth[i];
+        const float lines = breadth[i] * wash->plane[FL_WASH_LINES][i];
+        wash->plane[FL_WASH_LINES][i] = lines;
+        wash->plane[FL_WASH_TIDES][i] *= lines;
+        wash->plane[FL_WASH_BLOOMS][i] *= lines;
+    }
+}
+
+/* The fill of a region through the film, by which shapes are one wash; NULL: it has none. */
+static const char *fill_of(const FlComposeInput *input, int region)
+{
+    const char *paint = fl_drawing_region(input->drawing, region)->paint;
+    return paint[0] == '#' ? paint : NULL;
+}
+
+/* The side of a square that is as large as the shapes of a fill: the same in all frames. */
+static float size_of(const FlComposeInput *input, int region)
+{
+    const char *fill = fill_of(input, region);
+    float most = 0;
+    for (int p = 0; p < input->n_painted; p++) {
+        const FlPaintedRegion *other = input->painted[p];
+        const char *its = fill_of(input, other->region);
+        if (other->region == region || (fill && its && g_str_equal(fill, its)))
+            most = MAX(most, other->anchor.side);
+    }
+    return fl_clamp(most / input->paper_px, 12, 600);
+}
+
+/* The frame's points that surround the draws of a wash. */
+static void find_box(FlWash *wash, const FlComposeInput *input, FlRect around)
+{
+    const FlRect page = {0, 0, input->width, input->height};
+    const int step = MAX((int)(STEP_PX * input->paper_px + .5f), 2);
+    wash->step = step;
+    wash->box = fl_rect_on_grid(fl_rect_grown(around, FL_WASH_NEAR * step, page), step);
+    wash->width = (wash->box.width + step - 1) / step + 1;
+    wash->height = (wash->box.height + step - 1) / step + 1;
+}
+
+static void add_region(FlWashField *field, int region)
+{
+    const FlPaintedRegion *painted = field->input->painted[field->input->painted_of[region]];
+    const int n = MAX(painted->n_limbs, 1);
+    for (int k = 0; k < field->n_parts; k++)
+        if (field->part[k].region == region)
+            return;
+    field->part = g_renew(FlWashPart, field->part, field->n_parts + n);
+    for (int k = 0; k < n; k++) {
+        const FlLimb *limb = painted->n_limbs > 0 ? &painted->limb[k] : NULL;
+        field->part[field->n_parts++] =
+            (FlWashPart){region, limb ? limb->anchor : painted->anchor, limb, NULL};
+    }
+}
+
+static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input,
+                      const FlDrawList *draws, GError **error)
+{
+    FlRect around = {0, 0, 0, 0};
+    FlWashField field = {.wash = &washes->wash[w], .input = input};
+    for (int r = 0; r < draws->n; r++) {
+        if (washes->of_draw[r] != w)
+            continue;
+        around = fl_rect_or(around, draws->draw[r].area.box);
+        add_region(&field, draws->draw[r].region);
+    }
+    find_box(field.wash, input, around);
+    field.size = size_of(input, field.wash->painted->region);
+    field.wash->brush_px = fl_clamp(.31f * field.size, 34, 95);
+    const float angle = (float)(field.wash->painted->settings->light * G_PI / 180);
+    field.light[0] = cosf(angle), field.light[1] = sinf(angle);
+    const bool made = fl_field_alloc(&field, error);
+    if (made) {
+        fl_field_fill_masks(&field, washes, w, draws);
+        fl_field_divide(&field);
+        fl_field_find_side(&field);
+        fl_field_fill_noise(&field);
+        put_together(&field);
+    }
+    fl_field_clear(&field);
+    return made;
+}
+
+/* ---- a frame --------------------------------------------------------------------------------- */
+
+/* What the settings say, in a newer word or an older one, else the style. */
+static float said(double dial, double older, float of_style)
+{
+    return !isnan(dial) ? (float)dial : !isnan(older) ? (float)older : of_style;
+}
+
+FlWashStyle fl_wash_style_of(const FlPaintedRegion *painted)
+{
+    const FlRegionSettings *t = painted->settings;
+    const FlWashStyle *style = &painted->style->wash;
+    if (t->tint == FL_TINT_KEEP)
+        return (FlWashStyle){0};
+    return (FlWashStyle){.wash = said(t->wash, 5 * t->load, style->wash),
+                         .passes = said(t->passes, NAN, style->passes),
+                         .tide = said(t->tide, NAN, style->tide),
+                         .pool = said(t->pool, NAN, style->pool),
+                         .blooms = said(t->blooms, NAN, style->blooms),
+                         .hue = said(t->hue, 72 * t->pigments, style->hue)};
+}
+
+static bool same_style(const FlWashStyle *a, const FlWashStyle *b)
+{
+    return a->wash == b->wash && a->passes == b->passes && a->tide == b->tide &&
+           a->pool == b->pool && a->blooms == b->blooms && a->hue == b->hue;
+}
+
+/* The wash of a region in a list so far, or a new one; -1: it has none. */
+static int wash_of_region(FlWashes *washes, const FlComposeInput *input, int region)
+{
+    const int p = input->painted_of[region];
+    const FlPaintedRegion *painted = p >= 0 ? input->painted[p] : NULL;
+    if (!painted || painted->from == FL_FROM_NOWHERE)
+        return -1;
+    const char *fill = fill_of(input, region);
+    FlWash wash = {.painted = painted,
+                   .style = fl_wash_style_of(painted),
+                   .key = fl_key(input->seed, g_str_hash(fill ? fill : painted->name))};
+    if (wash.style.wash <= 0 && wash.style.hue <= 0)
+        return -1;
+    for (int w = 0; w < washes->n; w++)
+        if (washes->wash[w].key == wash.key && same_style(&washes->wash[w].style, &wash.style))
+            return w;
+    washes->wash = g_renew(FlWash, washes->wash, washes->n + 1);
+    washes->wash[washes->n] = wash;
+    return washes->n++;
+}
+
+bool fl_washes_find(FlWashes *washes, const FlComposeInput *input, const FlDrawList *draws,
+                    GError **error)
+{
+    GError *first = NULL;
+    *washes = (FlWashes){.of_draw = g_new(int, MAX(draws->n, 1))};
+    for (int r = 0; r < draws->n; r++)
+        washes->of_draw[r] = fl_rect_pixels(draws->draw[r].area.box) > 0
+                                 ? wash_of_region(washes, input, draws->draw[r].region)
+                                 : -1;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int w = 0; w < washes->n; w++) {
+        GError *failure = NULL;
+        if (!make_wash(washes, w, input, draws, &failure))
+            fl_parallel_error_keep(&first, failure);
+    }
+    return fl_parallel_error_propagate(error, first);
+}
+
+void fl_washes_clear(FlWashes *washes)
+{
+    for (int w = 0; w < washes->n; w++)
+        free(washes->wash[w].plane[0]);
+    g_free(washes->wash);
+    g_free(washes->of_draw);
+    *washes = (FlWashes){0};
+}
