@@ -332,7 +332,7 @@ static void a_mask_is_the_whole_shape(void)
     g_assert_cmpint(area, ==, 3200);
 }
 
-/** How many pixels of the only shape are inside. */
+/** The number of pixels that are wholly inside the only shape. */
 static int inside_of(const char *shape)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -344,7 +344,7 @@ static int inside_of(const char *shape)
     int inside = 0;
     fl_draw_list_mask(draws, 0, 100, 100, mask);
     for (int p = 0; p < 10000; p++)
-        inside += mask[p] >= 128;
+        inside += mask[p] == 255;
     return inside;
 }
 

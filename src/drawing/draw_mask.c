@@ -3,13 +3,14 @@
 #include "worker/raster.h"
 #include <string.h>
 
-#define HALF 128     // coverage from which on a pixel is inside, FL_INSIDE
 #define SEEN 3       // coverage that is seen
 #define CONTOUR_PX 2 // as wide as coverage rises at a contour
 
 /**
- * Returns: true if a pixel that is less than half covered belongs to a shape that fades, such as a
- * glow or a blurred shadow: it is not at a contour, for all around it on the page is seen.
+ * Returns: true if a pixel that is covered in part belongs to a shape that fades, such as a glow or
+ * a blurred shadow: it is not at a contour, for all around it on the page is seen. Such a pixel is
+ * inside as any other, and opacity is the layer's: a mask that fell from full to half coverage
+ * where a glow does would have a contour there.
  */
 static bool fades(const FlDraw *draw, FlRect page, int x, int y)
 {
@@ -29,11 +30,11 @@ static bool fades(const FlDraw *draw, FlRect page, int x, int y)
 
 static bool is_faint(uint8_t coverage)
 {
-    return (uint8_t)(coverage - 1) < HALF - 1;
+    return coverage > 0 && coverage < 255;
 }
 
-/** Adds a row over the rows of lower draws. Returns: true if a pixel of the row is less than half
- * covered. */
+/** Adds a row over the rows of lower draws. Returns: true if a pixel of the row is covered in
+ * part. */
 static bool put_over(const uint8_t *from, FlColumns span, uint8_t *restrict to)
 {
     uint8_t any = 0;

@@ -7,6 +7,7 @@
 #include "transport/style_ink.h"
 #include <string.h>
 
+#define LEAST_STILL 96                  // px: LazyFluids weaves too few patches into a hash
 #define BYTES_OF_WINDOW 50.0            // of a pixel, measured: with rotations
 #define BYTES_OF_REST 9.0               // while it is loaded
 #define WINDOW_BYTES (1024.0 * 1048576) // of one style
@@ -101,8 +102,10 @@ static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
 {
     const FlParams *params = &settings->params;
     float factor = 1;
+    const bool lazy = settings->engine == FL_ENGINE_LAZYFLUIDS && params->style_by_page;
     g_autoptr(FlStyle) whole =
-        fl_style_load_for(path, params->style_scale, texture_px, cache->options, &factor, error);
+        fl_style_load_for(path, params->style_scale, texture_px, lazy ? LEAST_STILL : 0,
+                          cache->options, &factor, error);
     const FlStyleUse use = {params->style_start, params->style_frames, params->style_step, factor,
                             settings->reverse};
     g_autoptr(FlStyle) style = whole ? fl_style_adapt(whole, &use, error) : NULL;

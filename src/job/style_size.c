@@ -154,13 +154,15 @@ static FlStyle *larger(const FlRecipe *recipe, const char *path, int size, const
     return style;
 }
 
-FlStyle *fl_style_load_for(const char *folder, float scale, float texture_px,
+FlStyle *fl_style_load_for(const char *folder, float scale, float texture_px, float least_px,
                            const FlRenderOptions *options, float *factor, GError **error)
 {
     g_autoptr(FlStyle) style = fl_style_load(folder, error);
     if (!style)
         return NULL;
-    *factor = (scale > 0 ? scale : style->scale) * texture_px;
+    const float given = scale > 0 ? scale : style->scale;
+    const float least = least_px / (float)MIN(style->width, style->height);
+    *factor = MAX(given * texture_px, MIN(given, least));
     g_autofree char *path = *factor > 1 && !options->dry_run ? recipe_of(style) : NULL;
     if (!path)
         return g_steal_pointer(&style);

@@ -7,6 +7,7 @@
 #define FADE 0.1f    // of a fade, by frame: it takes six where a layer is strained wholly
 #define HASTE 4      // per mean strain of the fresh layer
 #define LEAST 0.001f // speed for a second layer
+#define UNSEEN 0.01f // share of a region in which an old layer may still be seen
 
 void fl_material_layers_clear(FlMaterialLayers *layers)
 {
@@ -75,16 +76,23 @@ static void fade(FlMaterialLayers *layers, const float *strain, float haste, siz
     }
 }
 
-/* A layer that is seen nowhere is dropped. */
-static void drop_unseen(FlMaterialLayers *layers, size_t n)
+/* A layer of which the region shows next to nothing is dropped. Pixels outside the region do not
+ * count: their share does not fade, and an old layer that stays keeps a torn one from being laid
+ * anew. */
+static void drop_unseen(FlMaterialLayers *layers, const FlGuides *guides)
 {
-    bool seen[2] = {false, false};
-    for (size_t p = 0; p < n; p++)
-        for (int l = 0; l < 2; l++)
-            seen[l] |= layers->share.shift[2 * p + (size_t)l] > 0;
-    if (seen[0] && seen[1])
+    const FlMaterial *old = &layers->old;
+    float seen[2] = {0, 0}, inside = 0;
+    for (int y = 0; y < old->rect.height; y++)
+        for (int x = 0; x < old->rect.width; x++) {
+            const float *share =
+                layers->share.shift + 2 * ((size_t)y * (size_t)old->rect.width + (size_t)x);
+            if (fl_material_is_inside(old, guides, x, y))
+                seen[0] += share[0], seen[1] += share[1], inside++;
+        }
+    if (seen[0] > UNSEEN * inside && seen[1] > 0)
         return;
-    if (seen[1]) {
+    if (seen[1] > 0) {
         fl_material_clear(&layers->old);
         layers->old = layers->fresh, layers->fresh = (FlMaterial){0};
     }
@@ -143,6 +151,6 @@ bool fl_material_layers_advance(FlMaterialLayers *layers, const FlGuides *guides
         haste = haste_of(&layers->fresh, guides, fresh);
     }
     fade(layers, strain, haste, n);
-    drop_unseen(layers, n);
+    drop_unseen(layers, guides);
     return true;
 }

@@ -54,22 +54,29 @@ static bool frame_init(Frame *frame, const FlRefinementInput *input, const FlMat
 }
 
 /* The alignment of the pattern at a pixel with the plane, 0..1: a turned pattern would be bent
- * back, and is therefore not refined. Smooth: 1 up to 15 degrees, 0 from 35. */
+ * back, and is therefore not refined. Smooth: 1 up to 15 degrees, 0 from 35; of two layers by how
+ * much each is seen. */
 static float aligned(const Frame *frame, const FlFour *four)
 {
     const FlMaterialLayers *layers = frame->layers;
     const FlRect r = layers->old.rect;
-    const size_t p = four->p[0];
-    float f[2][2], old, fresh;
-    fl_material_layers_weights(layers, p, &old, &fresh);
-    fl_material_gradient(old >= fresh ? &layers->old : &layers->fresh, (int)(p % (size_t)r.width),
-                         (int)(p / (size_t)r.width), f);
-    const float a = f[0][0] + f[1][1], b = f[1][0] - f[0][1];
     const FlRigid *lies = &frame->plane.lies;
-    const float along = a * (float)lies->cosine + b * (float)lies->sine;
-    const float t = (along / fmaxf(hypotf(a, b), 1e-6f) - 0.82f) / (0.966f - 0.82f);
-    const float held = fminf(fmaxf(t, 0), 1);
-    return held * held * (3 - 2 * held);
+    const size_t p = four->p[0];
+    float weight[2], sum = 0;
+    fl_material_layers_weights(layers, p, &weight[0], &weight[1]);
+    for (int l = 0; l < 2; l++) {
+        float f[2][2];
+        if (weight[l] <= 0)
+            continue;
+        fl_material_gradient(l == 0 ? &layers->old : &layers->fresh, (int)(p % (size_t)r.width),
+                             (int)(p / (size_t)r.width), f);
+        const float a = f[0][0] + f[1][1], b = f[1][0] - f[0][1];
+        const float along = a * (float)lies->cosine + b * (float)lies->sine;
+        const float t = (along / fmaxf(hypotf(a, b), 1e-6f) - 0.82f) / (0.966f - 0.82f);
+        const float held = fminf(fmaxf(t, 0), 1);
+        sum += weight[l] * weight[l] * held * held * (3 - 2 * held);
+    }
+    return sum;
 }
 
 static void read_pixel(const Frame *frame, int x, int y, const float *velocity)
