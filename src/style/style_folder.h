@@ -39,7 +39,7 @@ typedef struct FlWashStyle {
 
 #define FL_WASH_DEFAULTS                                                                           \
     {                                                                                              \
-        .wash = 1, .passes = 1, .tide = 1, .pool = 1, .blooms = 1, .hue = 3.6f                     \
+        .wash = 1, .passes = 1, .tide = 1, .pool = 1, .blooms = 1, .hue = 4.4f                     \
     }
 
 /** A style in memory. Frames follow each other without padding, rows from the top. */
