@@ -21,6 +21,7 @@ FILMS = {
     "added": BOX % "<animate attributeName='x' values='0;20' additive='sum' dur='1s' fill='freeze'/>",
     "set between moments": BOX % f"<set attributeName='fill' to='#22aa55' begin='.55s' end='1.45s'/>",
     "one begins when another ends": BOX % "<animate id='a' attributeName='x' to='50' dur='.7s' fill='freeze'/><animate attributeName='y' begin='a.end+.2s' to='50' dur='.8s' fill='freeze'/>",
+    "one that begins again": BOX % "<animate id='a' attributeName='x' begin='0;b.end+.1s' values='30;60' calcMode='discrete' dur='.4s' fill='freeze'/><animate id='b' attributeName='x' begin='a.end+.2s' to='5' dur='.3s' fill='freeze'/>",
     "colours": BOX % "<animate attributeName='fill' values='#aa3311;#22aa55;#2255aa' dur='2s'/>",
     "paths": f"<path {BLUE} d='M10 10h30v30h-30z'><animate attributeName='d' dur='2s' values='M10 10h30v30h-30z;M20 5h60v70h-40z;M10 10h30v30h-30z'/></path>",
     "rotation about a point": BOX % "<animateTransform attributeName='transform' type='rotate' from='0 50 50' to='360 50 50' dur='2s'/>",

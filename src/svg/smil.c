@@ -580,11 +580,12 @@ static void apply_value(const Animation *a, double seconds)
         set_value(a->target, a->attribute, sum ? sum : value);
 }
 
-static int compare_begins(const void *x, const void *y)
+/** Sorts by the begin of the interval that counts: the one that began last is the strongest. */
+static int compare_begins(const void *x, const void *y, void *seconds)
 {
-    const Animation *a = *(const Animation *const *)x, *b = *(const Animation *const *)y;
-    const double p = a->interval->len ? g_array_index(a->interval, Interval, 0).begin : 0;
-    const double q = b->interval->len ? g_array_index(b->interval, Interval, 0).begin : 0;
+    const Interval *a = interval_at(*(const Animation *const *)x, *(double *)seconds);
+    const Interval *b = interval_at(*(const Animation *const *)y, *(double *)seconds);
+    const double p = a ? a->begin : 0, q = b ? b->begin : 0;
     return (p > q) - (p < q);
 }
 
@@ -633,7 +634,8 @@ void fl_smil_apply(xmlDoc *doc, double seconds, FlFilmLength *length)
     g_autoptr(GPtrArray) order = g_ptr_array_new();
     for (guint i = 0; i < timeline.animation->len; i++)
         g_ptr_array_add(order, timeline.animation->pdata[i]);
-    g_ptr_array_sort(order, compare_begins); // a stable sort: else in the document's order
+    g_ptr_array_sort_with_data(order, compare_begins,
+                               &seconds); // a stable sort: else in the document's order
     for (guint i = 0; i < order->len; i++) {
         apply(&timeline, order->pdata[i], seconds);
         if (length)
