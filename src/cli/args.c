@@ -330,7 +330,7 @@ static bool needs_input(FlCommand task)
     return task == FL_COMMAND_RENDER || task == FL_COMMAND_LIST_REGIONS ||
            task == FL_COMMAND_PRINT_CONFIG || task == FL_COMMAND_CHECK || task == FL_COMMAND_FLAT ||
            task == FL_COMMAND_COMPARE || task == FL_COMMAND_METHODS || task == FL_COMMAND_PLAN ||
-           task == FL_COMMAND_SERVE;
+           task == FL_COMMAND_SERVE || task == FL_COMMAND_WINDOW;
 }
 
 /* Previews and comparisons are drafts, and replace the previous ones. */

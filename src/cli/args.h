@@ -19,6 +19,7 @@ typedef enum FlCommand {
     FL_COMMAND_PLAN,
     FL_COMMAND_METHODS,
     FL_COMMAND_SERVE,
+    FL_COMMAND_WINDOW,
 } FlCommand;
 
 typedef enum FlProgressMode {

@@ -336,7 +336,7 @@ static int work(FlArgs *args)
         compare_styles(args, &error);
     else if (args->task == FL_COMMAND_METHODS)
         fl_compare_methods(&args->render, (const char *const *)args->variants, &error);
-    else if (args->task == FL_COMMAND_SERVE)
+    else if (args->task == FL_COMMAND_SERVE || args->task == FL_COMMAND_WINDOW)
         status = serve(args, &error);
     else if (args->render.watch)
         status = watch(args, &reporter);

@@ -35,6 +35,7 @@ typedef struct Live {
     GPtrArray *messages; // JSON objects, since the settings are as they are
     int generation;      // counts changes of the config and the files
     GMainLoop *loop;
+    GSubprocess *window; // NULL: none
 } Live;
 
 /* ---- the state of the page --------------------------------------------------------------------
@@ -450,6 +451,31 @@ static bool open_server(Live *live, GError **error)
     return true;
 }
 
+static void on_window_closed(GObject *window, GAsyncResult *result, void *data)
+{
+    const Live *live = data;
+    g_main_loop_quit(live->loop);
+}
+
+/* The window is a program beside this one, which would start later with all that WebKit needs. */
+static bool open_window(Live *live, GError **error)
+{
+    if (live->args->task != FL_COMMAND_WINDOW)
+        return true;
+    g_autofree char *self = g_file_read_link("/proc/self/exe", NULL);
+    g_autofree char *folder = g_path_get_dirname(self ? self : "");
+    g_autofree char *program = g_build_filename(folder, "fluidy-window", NULL);
+    g_autofree char *address = g_strconcat("http://", live->hosts[0], live->root, NULL);
+    live->window = g_subprocess_new(G_SUBPROCESS_FLAGS_NONE, NULL, program, address, NULL);
+    if (!live->window)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "--window: %s cannot be run; this build has no window, which needs WebKitGTK",
+                    program);
+    else
+        g_subprocess_wait_async(live->window, NULL, on_window_closed, live);
+    return live->window;
+}
+
 /* Reads a few frames, which shows what is wrong with the command line. */
 static bool prepare(Live *live, GError **error)
 {
@@ -459,7 +485,7 @@ static bool prepare(Live *live, GError **error)
     (void)fl_start_workers(); // before there are threads
     g_autoptr(FlRegionList) list = fl_region_list_new(&few, error);
     return list && (live->config = fl_live_config_new(live->args, error)) &&
-           open_server(live, error);
+           open_server(live, error) && open_window(live, error);
 }
 
 static void run(Live *live)
@@ -469,7 +495,6 @@ static void run(Live *live)
     live->film = fl_live_film_new(live->args, &calls);
     live->clients = fl_live_clients_new(live->film);
     watch_anew(live);
-    live->loop = g_main_loop_new(NULL, FALSE);
     const guint tick = g_timeout_add(TICK_MS, on_tick, live);
     printf("http://%s%s\n", live->hosts[0], live->root);
     fflush(stdout);
@@ -480,12 +505,15 @@ static void run(Live *live)
 
 static void clear(Live *live)
 {
+    if (live->window)
+        g_subprocess_force_exit(live->window);
     if (live->server)
         soup_server_disconnect(live->server);
     fl_live_film_free(live->film);
     fl_live_clients_free(live->clients);
     fl_live_socket_free(live->socket);
     g_clear_object(&live->server);
+    g_clear_object(&live->window);
     fl_live_config_free(live->config);
     fl_file_watch_free(live->files);
     fl_live_drop_free(live->drop);
@@ -499,7 +527,7 @@ static void clear(Live *live)
 
 bool fl_serve(const FlArgs *args, const volatile sig_atomic_t *stop, GError **error)
 {
-    Live live = {.args = args, .stop = stop};
+    Live live = {.args = args, .stop = stop, .loop = g_main_loop_new(NULL, FALSE)};
     const bool served = check_options(args, error) && prepare(&live, error);
     if (served)
         run(&live);
