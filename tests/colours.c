@@ -3,11 +3,12 @@
  *
  * usage: colours STYLE FOLDER...
  *
- * Paints every sequence and looks at each flat, opaque fill of a region in each frame where it is
- * seen, 2 px inside, if that is 64 pixels or more. Printed: how far the median colour is from the
- * fill, in CIEDE2000, where that is more than 3; how many fills are within 3; and the deviation of
- * the logarithm of the density where a fill is deeper than the paint's border, in 2000 pixels or
- * more, as a share of the exemplar's own. Status 1 if a fill is not within 3.
+ * Paints every sequence, without a wash and its hues, and looks at each flat, opaque fill of a
+ * region in each frame where it is seen, 2 px inside, if that is 64 pixels or more. Printed: how
+ * far the median colour is from the fill, in CIEDE2000, where that is more than 3; how many fills
+ * are within 3; and the deviation of the logarithm of the density where a fill is deeper than the
+ * paint's border, in 2000 pixels or more, as a share of the exemplar's own. Status 1 if a fill is
+ * not within 3.
  */
 #include "base/alloc.h"
 #include "delta_e.h"
@@ -162,8 +163,8 @@ static void judge_frame(const FlPlan *plan, int frame, const FlPicture *picture,
         if (plan->painted_of[draws->draw[r].region] < 0 || first_like(draws, r) < r)
             continue;
         const FlRegionPlan *painted = &plan->painted[plan->painted_of[draws->draw[r].region]];
-        const Look look = look_at(picture, top, (uint16_t)(r + 1), plan->paper,
-                                  painted->style->border_px);
+        const Look look =
+            look_at(picture, top, (uint16_t)(r + 1), plan->paper, painted->style->border_px);
         if (look.total < ENOUGH)
             continue;
         for (int c = 0; c < 3; c++)
@@ -197,9 +198,11 @@ static void judge(const char *folder, const char *style, Tally *all)
     g_autoptr(Scratch) scratch = scratch_make();
     g_autofree char *output = g_build_filename(scratch, "%d.png", NULL);
     const char *const inputs[] = {folder, NULL};
-    const FlSetting setting = {.name = "style", .value = style};
+    const FlSetting settings[] = {{.name = "style", .value = style},
+                                  {.name = "wash", .value = "0"},
+                                  {.name = "hue", .value = "0"}};
     const FlRenderOptions options = {
-        .inputs = inputs, .settings = &setting, .n_settings = 1, .output = output};
+        .inputs = inputs, .settings = settings, .n_settings = 3, .output = output};
     fl_render(&options, &error);
     stop_on(error);
     FlRenderOptions again = options;
