@@ -50,6 +50,10 @@ ink=(--style "$(dirname "$style")/styles/13")
 paint ink -j 1 "${ink[@]}" && paint ink_many -j 4 "${ink[@]}" && same ink_many ink &&
     FLUIDY_CPU_MASK=0 paint ink_plain "${ink[@]}" && same ink_plain ink && ! same ink one
 result $? 'ink is moved alike by four threads and without the larger instruction sets'
+paint smoke -j 1 "${ink[@]}" --fluid smoke &&
+    paint smoke_many -j 4 "${ink[@]}" --fluid smoke && same smoke_many smoke &&
+    FLUIDY_CPU_MASK=0 paint smoke_plain "${ink[@]}" --fluid smoke && same smoke_plain smoke
+result $? 'a fluid flows alike on any number of threads'
 batik=(--style "$(dirname "$style")/styles/12")
 paint batik "${batik[@]}"
 fine=("${batik[@]}" --refine 2)
