@@ -31,11 +31,13 @@ static void print_line(const char *text)
 
 #define TEXT_INT(value) #value
 #define TEXT_FLOAT(value) #value
+#define TEXT_DIAL(value) #value
 #define TEXT_BOOL(value) ((value) ? "on" : "off")
 #define TEXT_LIST(value) value
 
 #define ARGUMENT_INT "number"
 #define ARGUMENT_FLOAT "number"
+#define ARGUMENT_DIAL "number"
 #define ARGUMENT_BOOL "on | off"
 #define ARGUMENT_LIST "number,..."
 
@@ -198,6 +200,23 @@ static void print_settings(void)
     }
 }
 
+/* The options that may be keyed, with commas between. */
+static void print_keyed(void)
+{
+    printf(".Ic style");
+    for (int i = 0; i < N_OPTIONS; i++)
+        if (is(options[i].type, "DIAL"))
+            printf(" ,\n.Ic %s", options[i].name);
+#define FL_PARAM(type, field, ...)                                                                 \
+    if (is(#type, "DIAL")) {                                                                       \
+        printf(" ,\n.Ic ");                                                                        \
+        print_name(#field);                                                                        \
+    }
+#include "params/params.def"
+#undef FL_PARAM
+    puts(" .");
+}
+
 /* A line of the page that begins with @. Returns: false if it asks for what there is not. */
 static bool fill(char *line)
 {
@@ -206,6 +225,8 @@ static bool fill(char *line)
         return print_parameters(), true;
     if (is(line, "@PROJECT@\n"))
         return print_project(), true;
+    if (is(line, "@KEYED@\n"))
+        return print_keyed(), true;
     if (is(line, "@SETTINGS@\n"))
         return print_settings(), true;
     if (sscanf(line, "@%15s %63[a-z-]@", what, name) != 2)
@@ -245,8 +266,8 @@ static bool complete(const char *page)
     return all;
 }
 
-/* usage: fill PAGE > FILLED-PAGE. Lines that are replaced: @PARAMETERS@, @PROJECT@ and @SETTINGS@
- * are lists; @OPTION name@ begins an item; @RANGE name@ is a sentence. */
+/* usage: fill PAGE > FILLED-PAGE. Lines that are replaced: @PARAMETERS@, @PROJECT@,
+ * @SETTINGS@ and @KEYED@ are lists; @OPTION name@ begins an item; @RANGE name@ is a sentence. */
 int main(int argc, char **argv)
 {
     FILE *page = argc == 2 ? fopen(argv[1], "r") : NULL;

@@ -35,7 +35,7 @@ static inline void draw_disk(FlGuides *guides, float x0, float motion)
     }
 }
 
-static inline FlCarriedInk *ink_of(const FlTile *tile, float strength)
+static inline FlCarriedInk *ink_of(const FlTile *tile, const double *strength)
 {
     const FlCarriedInkInput input = {.tile = tile,
                                      .width = SIDE,
@@ -51,15 +51,17 @@ typedef struct Disk {
     FlTile *tile;
     FlCarriedInk *ink;
     FlGuides guides;
+    double strength;
     float amount[PIXELS];
     uint8_t rgb[3 * PIXELS];
 } Disk;
 
-static inline Disk *disk_new(float strength)
+static inline Disk *disk_new(double strength)
 {
     Disk *disk = g_new0(Disk, 1);
     disk->tile = waves();
-    disk->ink = ink_of(disk->tile, strength);
+    disk->strength = strength;
+    disk->ink = ink_of(disk->tile, &disk->strength);
     g_assert_true(fl_guides_init(&disk->guides, SIDE, SIDE, NULL));
     return disk;
 }
@@ -93,7 +95,7 @@ static inline double mean_of(const Disk *disk, double *deviation)
 typedef struct Motion {
     const char *name;
     float shift, turn, growth; // px, radians and a factor of its size
-    float tile, refined; // bounds of flicker
+    float tile, refined;       // bounds of flicker
 } Motion;
 
 /* The frame before's place of a pixel of a frame; a disk's radius is that of the frame. */

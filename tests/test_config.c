@@ -52,6 +52,26 @@ static void a_mistake_is_named_with_file_and_line(void)
         {"[defaults]\nw-temp = 2000", ":2: w-temp: “2000” is not a number from 0 to 1000"},
         {"[defaults]\nw-temp = 2\nw-temp = 3", ":3: w-temp is set twice in this section"},
         {"[defaults]\n[defaults]", ":2: [defaults] occurs twice"},
+        {"[defaults]\nhold = 1@1 2@9",
+         ":2: hold: “1@1 2@9” has keys, but this option is the same in all "
+         "frames; fluidy-svg.conf(5) lists those that can be keyed"},
+        {"[defaults]\ncarry = 0@1 2@9", ":2: carry: “2” is not a number from 0 to 1"},
+        {"[defaults]\ncarry = 0 1@9", ":2: carry: “0 1” is not a number from 0 to 1"},
+        {"[defaults]\ncarry = 0@9 1@9",
+         ":2: carry: frame 9 does not come after frame 9, that of the "
+         "key before"},
+        {"[defaults]\ncarry = 0@1 1@9~3",
+         ":2: carry: “~3” is for styles; a number changes evenly from "
+         "key to key"},
+        {"[defaults]\ngranulation = auto@1 1@9",
+         ":2: granulation: “auto” cannot be keyed; expected a "
+         "number"},
+        {"[defaults]\nstyle = a@1~3",
+         ":2: style: “a” is the first key: there is none to replace in 3 "
+         "frames"},
+        {"[defaults]\nstyle = a@1 b@5~6 c@9",
+         ":2: style: frame 9 comes before frame 11, in which “b” is "
+         "complete"},
         {"[region a]\nmatch = *\n[region b]\n[region a]", ":4: [region a] occurs twice, first in "
                                                           "line 1"},
         {"[region a]\nmatch-fil = #fff", ":2: [region] has no key “match-fil”; did you mean "
@@ -113,6 +133,36 @@ static void the_example_of_the_manual_is_read(void)
     g_assert_null(hair->match_id);
     g_assert_false(hair->by_name);
     g_assert_cmpstr(config->rules[1].name, ==, "line-art");
+}
+
+static double carry_at(FlRegionSettings *settings, int frame)
+{
+    fl_region_settings_move(settings, frame);
+    return (double)settings->params.carry;
+}
+
+static void keyed_numbers_are_linear_between_keys(void)
+{
+    g_autoptr(FlConfig) config = load("[defaults]\ncarry = 0.25@-4 0.75@4  0.5@6\nload = 0@1 1@3\n"
+                                      "[region b]\ncarry = 0.5\n[region c]\npreset = thesis\n");
+    const FlRenderOptions options = {0};
+    g_auto(FlRegionSettings) a, b, c;
+    g_assert_true(fl_config_region_settings(config, -1, "a", &options, &a, NULL));
+    g_assert_true(fl_config_region_settings(config, 0, "b", &options, &b, NULL));
+    g_assert_true(fl_config_region_settings(config, 1, "c", &options, &c, NULL));
+    static const struct {
+        int frame;
+        double carry, load;
+    } expected[] = {{-9, .25, 0}, {-4, .25, 0}, {0, .5, 0}, {2, .625, .5},
+                    {4, .75, 1},  {5, .625, 1}, {99, .5, 1}};
+    for (size_t k = 0; k < G_N_ELEMENTS(expected); k++) {
+        g_assert_cmpfloat(carry_at(&a, expected[k].frame), ==, expected[k].carry);
+        g_assert_cmpfloat(a.load, ==, expected[k].load);
+    }
+    g_assert_cmpfloat(carry_at(&b, 4), ==, .5); // a later plain value takes the keys away
+    g_assert_cmpfloat(carry_at(&c, 4), ==, 0);  // and so does a preset
+    g_autofree char *text = fl_option_get(fl_option_find(FL_SCOPE_REGION, "carry"), &a);
+    g_assert_cmpstr(text, ==, "0.25@-4 0.75@4  0.5@6");
 }
 
 static void later_words_win_and_a_preset_goes_first(void)
@@ -208,6 +258,7 @@ int main(int argc, char **argv)
     CASE(a_mistake_is_named_with_file_and_line);
     CASE(a_file_that_cannot_be_read_is_named);
     CASE(the_example_of_the_manual_is_read);
+    CASE(keyed_numbers_are_linear_between_keys);
     CASE(later_words_win_and_a_preset_goes_first);
     CASE(detail_is_between_preset_and_parameters);
     CASE(an_engine_brings_weights_of_its_own);

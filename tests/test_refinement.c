@@ -49,13 +49,14 @@ static Disk *batik_new(FlSliced *patches)
     fl_tile_free(disk->tile);
     disk->tile = fl_tile_load(folder, 1, NULL);
     g_assert_nonnull(disk->tile);
+    static const double strength = 1;
     FlCarriedInkInput input = {.tile = disk->tile,
                                .patches = patches,
                                .refine = 8,
                                .width = SIDE,
                                .height = SIDE,
                                .scale = 1,
-                               .strength = 1,
+                               .strength = &strength,
                                .seed = 3};
     fl_carried_ink_free(disk->ink);
     disk->ink = fl_carried_ink_new(&input, NULL);

@@ -16,6 +16,7 @@ typedef enum FlParamType {
     FL_PARAM_FLOAT,
     FL_PARAM_BOOL, /**< written on or off; true, yes, 1, false, no, 0 are read as well */
     FL_PARAM_LIST, /**< one to eight integers with commas between, such as "6,4" */
+    FL_PARAM_DIAL, /**< a float that may be keyed: fluidy-svg.conf(5) */
 } FlParamType;
 
 /** The presets, by their names. */

@@ -316,6 +316,7 @@ static const char *kind_of(const FlOption *option)
         return "integer";
     case FL_OPTION_REAL:
     case FL_OPTION_DIAL:
+    case FL_OPTION_FIXED:
         return "number";
     case FL_OPTION_STYLE:
         return "style";

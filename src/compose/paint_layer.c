@@ -278,10 +278,57 @@ void fl_layer_begin(FlLayer *layer, const FlLayerSources *sources, int r)
                        .blend_mode = draw->blend_mode};
 }
 
+/* The first style of a region that is seen in the frame; below 0 as in painted_of. */
+static int first_style(const FlComposeInput *input, int region)
+{
+    int p = input->painted_of[region];
+    while (p >= 0 && input->painted[p]->share <= 0 && input->painted[p]->more)
+        p++;
+    return p;
+}
+
+/* Mixes another layer of the same shape into a layer: `share` of it, 0..1. */
+static void mix_in(FlLayer *layer, const FlLayer *other, float share)
+{
+    for (int y = 0; y < layer->area.box.height; y++) {
+        const FlColumns span = fl_area_row(&layer->area, y);
+        const size_t row = (size_t)y * (size_t)layer->area.box.width;
+        for (size_t p = row + (size_t)span.first; p < row + (size_t)span.last; p++) {
+            uint8_t *a = layer->rgba + 4 * p;
+            const uint8_t *b = other->rgba + 4 * p;
+            const float of_a = (1 - share) * a[3], of_b = share * b[3], alpha = of_a + of_b;
+            for (int c = 0; c < 3 && alpha > 0; c++)
+                a[c] = (uint8_t)((of_a * a[c] + of_b * b[c]) / alpha + 0.5f);
+            a[3] = (uint8_t)(alpha + 0.5f);
+            layer->knockout[p] =
+                (uint8_t)((1 - share) * layer->knockout[p] + share * other->knockout[p] + 0.5f);
+        }
+    }
+}
+
+/* Adds the style that replaces the p-th painted region's. */
+static bool add_next_style(FlLayer *layer, const FlLayerSources *sources, int r, int p,
+                           GError **error)
+{
+    g_auto(FlPaintedReader) look = {0};
+    FlLayer other = *layer;
+    other.knockout = NULL;
+    if (!fl_painted_read(sources->input->painted[p + 1], &look, error) ||
+        !(other.rgba = fl_alloc_scratch(4 * fl_rect_pixels(layer->area.box), 1, "a layer", error)))
+        return false;
+    const bool done =
+        paint_layer(&other, sources, r, &look.region, sources->exposures[p + 1], error);
+    if (done)
+        mix_in(layer, &other, look.region.share);
+    free(other.rgba);
+    free(other.knockout);
+    return done;
+}
+
 bool fl_layer_paint(FlLayer *layer, const FlLayerSources *sources, int r, GError **error)
 {
     const FlDraw *draw = &sources->cover->draws->draw[r];
-    const int p = sources->input->painted_of[draw->region];
+    const int p = first_style(sources->input, draw->region);
     g_auto(FlPaintedReader) look = {0};
     const FlPaintedRegion *painted = p >= 0 ? &look.region : NULL;
     if (painted && !fl_painted_read(sources->input->painted[p], &look, error))
@@ -292,7 +339,9 @@ bool fl_layer_paint(FlLayer *layer, const FlLayerSources *sources, int r, GError
         return false;
     if (painted)
         return (cut_out ? paint_cut_out : paint_layer)(layer, sources, r, painted,
-                                                       sources->exposures[p], error);
+                                                       sources->exposures[p], error) &&
+               (!painted->more || painted->share >= 1 ||
+                add_next_style(layer, sources, r, p, error));
     fl_colourise_plain(draw->picture, draw->rgb, layer->coverage, &layer->area, layer->rgba);
     return true;
 }

@@ -46,6 +46,8 @@ typedef struct FlPaintedRegion {
     const char *name;                 // borrowed, as settings and style are
     const FlRegionSettings *settings; // settings of its painting
     const FlStyleInstance *style;     // with what
+    float share;                      // of its style in the region in this frame, 0..1
+    bool more;                        // the next one of the list is the region in its next style
     int width, height;                // of the drawing as it is painted, px
     FlAnchor anchor;                  // of the region in the picture's frame
     int n_limbs;

@@ -150,6 +150,20 @@ static bool same_style(const FlWashStyle *a, const FlWashStyle *b)
            a->pool == b->pool && a->blooms == b->blooms && a->hue == b->hue;
 }
 
+/* The mean of a region's styles, by their shares in the frame. */
+static FlWashStyle style_of_region(const FlComposeInput *input, int first)
+{
+    FlWashStyle mean = {0};
+    for (int p = first; p == first || input->painted[p - 1]->more; p++) {
+        const FlWashStyle style = fl_wash_style_of(input->painted[p]);
+        const float share = input->painted[p]->share;
+        mean.wash += share * style.wash, mean.passes += share * style.passes;
+        mean.tide += share * style.tide, mean.pool += share * style.pool;
+        mean.blooms += share * style.blooms, mean.hue += share * style.hue;
+    }
+    return mean;
+}
+
 /* The wash of a region in a list so far, or a new one; -1: it has none. */
 static int wash_of_region(FlWashes *washes, const FlComposeInput *input, int region)
 {
@@ -159,7 +173,7 @@ static int wash_of_region(FlWashes *washes, const FlComposeInput *input, int reg
         return -1;
     const char *fill = fill_of(input, region);
     FlWash wash = {.painted = painted,
-                   .style = fl_wash_style_of(painted),
+                   .style = style_of_region(input, p),
                    .key = fl_key(input->seed, g_str_hash(fill ? fill : painted->name))};
     if (wash.style.wash <= 0 && wash.style.hue <= 0)
         return -1;

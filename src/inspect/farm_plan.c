@@ -56,9 +56,11 @@ static void add_task(Farm *farm, int p, double share)
     g_array_append_val(farm->tasks, task);
 }
 
+/* Returns: true if a task has a region, in all its styles; p is its first one. */
 static bool is_painted(const FlPlan *plan, int p)
 {
-    return !fl_plan_hides(plan, plan->painted[p].region);
+    const int region = plan->painted[p].region;
+    return plan->painted_of[region] == p && !fl_plan_hides(plan, region);
 }
 
 static int count_painted(const FlPlan *plan)

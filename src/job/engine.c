@@ -120,7 +120,7 @@ static void *transport_open(const FlEngineInput *input, GError **error)
     FlCarriedInkInput carried = {.width = input->size.width,
                                  .height = input->size.height,
                                  .scale = input->style->enlarged,
-                                 .strength = (float)input->settings->strength,
+                                 .strength = &input->settings->strength,
                                  .refine = input->settings->refine,
                                  .seed = input->seed};
     if (carried.refine > 0)

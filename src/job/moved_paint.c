@@ -28,7 +28,7 @@ static void *moved_open(const FlEngineInput *input, GError **error)
     FlCarriedInkInput carried = {.width = input->size.width,
                                  .height = input->size.height,
                                  .scale = input->tile->enlarged,
-                                 .strength = (float)input->settings->strength,
+                                 .strength = &input->settings->strength,
                                  .seed = input->seed};
     memcpy(carried.colour.paper, input->style->paper, sizeof carried.colour.paper);
     moved->painter = fl_engine_choose(input->settings->engine, input->style->path);

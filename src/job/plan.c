@@ -250,8 +250,10 @@ void fl_plan_free(FlPlan *plan)
 {
     if (!plan)
         return;
-    for (int p = 0; p < plan->n_painted; p++)
+    for (int p = 0; p < plan->n_painted; p++) {
         fl_region_settings_clear(&plan->painted[p].settings);
+        fl_keys_free(plan->painted[p].styles);
+    }
     g_free(plan->painted);
     g_free(plan->painted_of);
     g_free(plan->edge_limits);

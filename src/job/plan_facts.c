@@ -108,6 +108,8 @@ static void add_painted(FlFacts *facts, const FlPlan *plan)
     for (int p = 0; p < plan->n_painted; p++) {
         const FlRegionPlan *painted = &plan->painted[p];
         fl_facts_add_options(facts, FL_SCOPE_REGION, &painted->settings, painted->name);
+        if (painted->styles)
+            fl_facts_add(facts, painted->name, painted->styles->text);
         if (painted->flow_files)
             add_pattern(facts, plan, painted->flow_files, painted->name);
         if (painted->paint_files)
@@ -192,6 +194,13 @@ static void add_method(FlFacts *facts, const FlShapes *shapes, const FlRegionPla
     fl_facts_add_number(facts, "whether it is a loop", painted->loops);
 }
 
+/* drawing: NULL: they are counted from 1. */
+static void add_numbers(FlFacts *facts, const FlDrawing *drawing)
+{
+    for (int f = 0; drawing && f < fl_drawing_frames(drawing); f++)
+        fl_facts_add_number(facts, "the number of a frame", fl_drawing_number(drawing, f));
+}
+
 /* The edges that paint crosses: a guide of depth may reach into all these shapes. */
 static void add_edges(FlFacts *facts, const FlPlan *plan)
 {
@@ -205,6 +214,12 @@ FlFacts *fl_region_facts(const FlShapes *shapes, const FlRegionPlan *region, FlI
 {
     FlFacts *facts = fl_facts_new();
     add_method(facts, shapes, region);
+    if (region->styles) {
+        fl_facts_add(facts, "the keys of its style", region->styles->text);
+        fl_facts_add_number(facts, "which of them it is", region->style_key);
+    }
+    if (region->settings.keyed || region->styles)
+        add_numbers(facts, shapes->drawing);
     add_values(facts, FL_SCOPE_REGION, &region->settings, NULL, false);
     add_style(facts, inputs, region->style->path);
     if (region->tile)
@@ -216,8 +231,7 @@ void fl_region_facts_add_film(FlFacts *facts, const FlPlan *plan, int p)
 {
     const FlRegionPlan *painted = &plan->painted[p];
     add_drawings(facts, plan);
-    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++) // by which layers of one file differ
-        fl_facts_add_number(facts, "the number of a frame", fl_drawing_number(plan->drawing, f));
+    add_numbers(facts, plan->drawing); // by which layers of one file differ
     add_values(facts, FL_SCOPE_RENDER, &plan->options, NULL, false);
     fl_facts_add_number(facts, "the hold", plan->hold);
     add_edges(facts, plan);

@@ -3,6 +3,8 @@
 #include "base/limits.h"
 #include "base/suggest.h"
 #include "io/png.h"
+#include "params/keys.h"
+#include "params/options.h"
 #include <string.h>
 
 static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
@@ -57,6 +59,54 @@ static bool is_left_out(const FlPlan *plan, const char *name)
     return only && !g_strv_contains((const char *const *)names, name);
 }
 
+/* Chooses the k-th of the keyed styles of a painted region's settings. */
+static bool choose_key(FlPlan *plan, FlRegionPlan *painted, int k, GError **error)
+{
+    const FlOption *option = fl_option_find(FL_SCOPE_REGION, "style");
+    const FlKeys *keys = fl_option_keys(option, &painted->settings);
+    const FlKey *key = &g_array_index(keys->key, FlKey, k);
+    g_autofree char *style = g_strdup(key->value);
+    if (k > 0) {
+        char *name = g_strdup_printf("%s@%d", painted->name, key->frame);
+        g_ptr_array_add(plan->config->strings, name);
+        painted->name = name;
+    }
+    painted->style_key = k;
+    painted->styles = fl_keys_read(option, true, keys->text, error);
+    return painted->styles &&
+           fl_region_settings_set(&painted->settings, "style", style, NULL, error);
+}
+
+/* Splits the region that was planned last into a painted region for each of its keyed styles. */
+static bool add_styles(FlPlan *plan, int region, GError **error)
+{
+    const FlRegion *r = fl_drawing_region(plan->drawing, region);
+    const FlKeys *keys = fl_option_keys(fl_option_find(FL_SCOPE_REGION, "style"),
+                                        &plan->painted[plan->n_painted - 1].settings);
+    const int n = keys ? (int)keys->key->len : 0;
+    const int room = plan->n_painted + fl_drawing_regions(plan->drawing) + n;
+    if (n == 0)
+        return true;
+    plan->painted = g_renew(FlRegionPlan, plan->painted, room);
+    memset(plan->painted + plan->n_painted, 0,
+           (size_t)(room - plan->n_painted) * sizeof *plan->painted);
+    for (int k = 0; k < n; k++) {
+        FlRegionPlan *painted = &plan->painted[plan->n_painted - 1];
+        if (!choose_key(plan, painted, k, error))
+            return false;
+        if (k + 1 == n)
+            break;
+        painted->more = true;
+        painted++;
+        if (!fl_config_region_settings(plan->config, r->rule, r->name, &plan->options,
+                                       &painted->settings, error))
+            return false;
+        painted->region = region, painted->name = r->name;
+        plan->n_painted++;
+    }
+    return true;
+}
+
 /* The settings of a region, and whether it is painted. */
 static bool plan_region(FlPlan *plan, int region, GError **error)
 {
@@ -78,12 +128,13 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
         return true;
     }
     chosen->region = region;
+    chosen->name = r->name;
     plan->painted_of[region] = plan->n_painted++; // from here on, fl_plan_free() clears it
-    if (!settings->style)
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "no style for region “%s”; use ‘style’ NAME, or style = NAME in a config",
-                    r->name);
-    return settings->style != NULL;
+    if (settings->style)
+        return add_styles(plan, region, error);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "no style for region “%s”; use ‘style’ NAME, or style = NAME in a config", r->name);
+    return false;
 }
 
 /* All regions have half the size or none, including those left out this time, since they are

@@ -80,6 +80,19 @@ static bool check_export(const FlPlan *plan, const FlRegionPlan *painted, GError
     return false;
 }
 
+/* Two layers are mixed while a style replaces another; cut out, they have other shapes. */
+static bool check_keyed(const FlRegionPlan *painted, GError **error)
+{
+    const FlEngine *engine = painted->engine;
+    if (!painted->styles || !engine->reach ||
+        engine->reach(painted->style, &painted->settings.params) <= 0)
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "region %s: the paint of %s is cut out, and so it can be no keyed style",
+                painted->name, painted->style->path);
+    return false;
+}
+
 /* Lists the files of a region's style before they are read, so that a broken style can be watched.
  */
 static void list_style(FlPlan *plan, const char *name)
@@ -111,7 +124,7 @@ static bool choose_fluid(const FlPlan *plan, FlRegionPlan *painted, GError **err
 static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
 {
     const FlRegion *r = fl_drawing_region(plan->drawing, painted->region);
-    painted->name = r->name, painted->area_px = r->area_px;
+    painted->area_px = r->area_px;
     painted->flow_files = plan->options.flow;
     painted->paint_files = plan->options.merge ? plan->options.paint : NULL;
     painted->keeps_flow = plan->options.dump != NULL;
@@ -131,8 +144,8 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
         g_prefix_error(error, "region %s: ", r->name);
         return false;
     }
-    if (!choose_fluid(plan, painted, error) || !check_export(plan, painted, error) ||
-        !warn_of_style(plan, painted, error))
+    if (!choose_fluid(plan, painted, error) || !check_keyed(painted, error) ||
+        !check_export(plan, painted, error) || !warn_of_style(plan, painted, error))
         return false;
     if (plan->options.verbose)
         send_line(plan, plan->options.note, "region %s: style %s, engine %s", r->name,

@@ -66,7 +66,6 @@ FlLazy *fl_lazy_new(const FlExemplar *exemplar, const FlParams *params, FlSynthS
     g_autoptr(FlLazy) lazy = g_new0(FlLazy, 1);
     lazy->exemplar = exemplar, lazy->params = params;
     lazy->width = size.width, lazy->height = size.height;
-    lazy->weights = weights_of(params);
     lazy->sigma_px = sigma_of(exemplar, params);
     lazy->n_levels = MIN(exemplar->n_levels, fl_levels_of(size.frame_width, size.frame_height));
     lazy->key = fl_hash64(seed);
@@ -487,6 +486,7 @@ static bool paint(FlLazy *lazy, FlGuides *guides, uint8_t *rgb, uint8_t *alpha, 
 {
     clear_frame(lazy);
     lazy->last.frame++;
+    lazy->weights = weights_of(lazy->params);
     if (is_empty(lazy, guides)) {
         write_nothing(lazy, rgb, alpha);
         return true;

@@ -381,6 +381,6 @@ bool fl_config_region_settings(const FlConfig *config, int rule, const char *reg
         return false;
     }
     if (settings->motion == FL_MOTION_MASKS)
-        settings->params.carry = 0; // by what outlines show
+        fl_region_settings_set(settings, "carry", "0", NULL, NULL); // by what outlines show
     return true;
 }

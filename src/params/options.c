@@ -1,6 +1,7 @@
 #include "params/options.h"
 
 #include "base/suggest.h"
+#include "params/keys.h"
 #include "params/text.h"
 
 #include <math.h>
@@ -40,7 +41,7 @@ int fl_option_count(void)
 
 static FlOption of_parameter(const FlParamInfo *info)
 {
-    static const char *const values[] = {"N", "X", "on|off", "N,…"};
+    static const char *const values[] = {"N", "X", "on|off", "N,…", "X"};
     return (FlOption){.name = info->name,
                       .scope = FL_SCOPE_REGION,
                       .type = FL_OPTION_PARAM,
@@ -77,6 +78,13 @@ const FlOption *fl_option_find(FlOptionScope scope, const char *name)
             return option;
     }
     return NULL;
+}
+
+bool fl_option_can_be_keyed(const FlOption *option)
+{
+    if (option->type == FL_OPTION_PARAM)
+        return fl_param_info(fl_param_find(option->name))->type == FL_PARAM_DIAL;
+    return option->type == FL_OPTION_DIAL || strcmp(option->name, "style") == 0;
 }
 
 bool fl_option_names_style(const char *name)
@@ -151,12 +159,14 @@ char *fl_option_help(const FlOption *option)
 static bool is_number(const FlOption *option)
 {
     return option->type == FL_OPTION_INT || option->type == FL_OPTION_COUNT ||
-           option->type == FL_OPTION_REAL || option->type == FL_OPTION_DIAL;
+           option->type == FL_OPTION_REAL || option->type == FL_OPTION_DIAL ||
+           option->type == FL_OPTION_FIXED;
 }
 
 static bool is_real(const FlOption *option)
 {
-    return option->type == FL_OPTION_REAL || option->type == FL_OPTION_DIAL;
+    return option->type == FL_OPTION_REAL || option->type == FL_OPTION_DIAL ||
+           option->type == FL_OPTION_FIXED;
 }
 
 bool fl_option_reject(const FlOption *option, const char *value, GError **error)
@@ -327,9 +337,22 @@ static char *tint_text(const FlOption *option, const FlRegionSettings *t)
                : word(option->value, (int)t->tint);
 }
 
+const FlKeys *fl_option_keys(const FlOption *option, const FlRegionSettings *settings)
+{
+    for (guint i = 0; settings->keyed && i < settings->keyed->len; i++) {
+        const FlKeys *keys = g_ptr_array_index(settings->keyed, i);
+        if (keys->option == option)
+            return keys;
+    }
+    return NULL;
+}
+
 char *fl_option_get(const FlOption *option, const void *object)
 {
+    const FlKeys *keys = option->scope == FL_SCOPE_REGION ? fl_option_keys(option, object) : NULL;
     const void *const field = (const char *)object + option->offset;
+    if (keys)
+        return g_strdup(keys->text);
     switch (option->type) {
     case FL_OPTION_FLAG:
     case FL_OPTION_BOOL:
@@ -341,6 +364,7 @@ char *fl_option_get(const FlOption *option, const void *object)
     case FL_OPTION_REAL: // likewise
         return number_text(MAX(*(const double *)field, 0));
     case FL_OPTION_DIAL:
+    case FL_OPTION_FIXED:
         return isnan(*(const double *)field) ? g_strdup("auto")
                                              : number_text(*(const double *)field);
     case FL_OPTION_WORD:

@@ -19,6 +19,7 @@ typedef enum FlOptionType {
     FL_OPTION_SWITCH,
     FL_OPTION_INT,
     FL_OPTION_DIAL,
+    FL_OPTION_FIXED,
     FL_OPTION_COUNT,
     FL_OPTION_REAL,
     FL_OPTION_WORD,
@@ -92,6 +93,9 @@ const FlOption *fl_option_find(FlOptionScope scope, const char *name);
 /** Returns: true if the value of a region's option is a style's name or folder. */
 bool fl_option_names_style(const char *name);
 
+/** Returns: true if a region's option may be keyed in time. */
+bool fl_option_can_be_keyed(const FlOption *option);
+
 /** The option of the command line: "width" or the letter "W"; NULL if unknown. */
 const FlOption *fl_option_find_argument(const char *name);
 
@@ -128,6 +132,9 @@ bool fl_option_is_set(const FlOption *option, const FlRenderOptions *options);
 void fl_option_copy(const FlOption *option, const FlRenderOptions *from, FlRenderOptions *to);
 
 /* ---- options of a render or a region --------------------------------------------------------- */
+
+/** The keys of a region's option, borrowed; NULL: it is not keyed. */
+const struct FlKeys *fl_option_keys(const FlOption *option, const FlRegionSettings *settings);
 
 /** The value as text: `object` is the struct of its scope. NULL: not set. To be freed. */
 char *fl_option_get(const FlOption *option, const void *object);

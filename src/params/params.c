@@ -22,6 +22,7 @@ static const size_t offsets[N_PARAMS] = {
 /* A list stands in params.def as a string; numbers stand there as themselves. */
 #define TEXT_INT(value) #value
 #define TEXT_FLOAT(value) #value
+#define TEXT_DIAL(value) #value
 #define TEXT_BOOL(value) ((value) ? "on" : "off")
 #define TEXT_LIST(value) value
 
@@ -77,6 +78,11 @@ static const char *const *param_names(void)
     return names;
 }
 
+size_t fl_param_offset(int index)
+{
+    return offsets[index];
+}
+
 int fl_param_find(const char *name)
 {
     g_autofree char *dashed = g_strdelimit(g_strdup(name), "_", '-');
@@ -114,6 +120,7 @@ static bool parse(const FlParamInfo *info, const char *text, Value *value)
     case FL_PARAM_INT:
         return fl_text_integer(text, info->min, info->max, &value->i);
     case FL_PARAM_FLOAT:
+    case FL_PARAM_DIAL:
         if (!fl_text_number(text, &number) || number < info->min || number > info->max)
             return false;
         value->f = (float)number;
@@ -130,7 +137,8 @@ static bool parse(const FlParamInfo *info, const char *text, Value *value)
 static char *expectation(const FlParamInfo *info)
 {
     static const char *const kinds[] = {"an integer", "a number", "on or off",
-                                        "one to eight integers separated by commas, each"};
+                                        "one to eight integers separated by commas, each",
+                                        "a number"};
     if (info->type == FL_PARAM_BOOL)
         return g_strdup(kinds[info->type]);
     return g_strdup_printf("%s from %g to %g%s%s", kinds[info->type], info->min, info->max,
@@ -163,6 +171,7 @@ static void store(FlParams *params, int index, const Value *value)
         *(int *)field = value->i;
         break;
     case FL_PARAM_FLOAT:
+    case FL_PARAM_DIAL:
         *(float *)field = value->f;
         break;
     case FL_PARAM_BOOL:
@@ -202,7 +211,8 @@ char *fl_params_get(const FlParams *params, const char *name)
     switch (infos[index].type) {
     case FL_PARAM_INT:
         return g_strdup_printf("%d", *(const int *)field);
-    case FL_PARAM_FLOAT: // nine digits give a float back
+    case FL_PARAM_FLOAT:
+    case FL_PARAM_DIAL: // nine digits give a float back
         return g_strdup(g_ascii_formatd(text, sizeof text, "%.9g", *(const float *)field));
     case FL_PARAM_BOOL:
         return g_strdup(*(const bool *)field ? "on" : "off");

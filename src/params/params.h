@@ -14,6 +14,7 @@ typedef struct FlIntList {
 
 #define FL_C_TYPE_INT int
 #define FL_C_TYPE_FLOAT float
+#define FL_C_TYPE_DIAL float
 #define FL_C_TYPE_BOOL bool
 #define FL_C_TYPE_LIST FlIntList
 
@@ -48,6 +49,9 @@ static inline int fl_list_at(const FlIntList *list, int from_coarsest)
 {
     return list->value[from_coarsest < list->n ? from_coarsest : list->n - 1];
 }
+
+/** The offset of a parameter's field in FlParams. */
+size_t fl_param_offset(int index);
 
 /** The names of the presets, NULL-terminated; static storage. */
 extern const char *const fl_preset_names[];

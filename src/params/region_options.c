@@ -1,6 +1,7 @@
 #include "params/region_settings.h"
 
 #include "base/suggest.h"
+#include "params/keys.h"
 #include "params/options.h"
 #include "params/text.h"
 
@@ -23,6 +24,42 @@ const char *const *fl_region_settings_keys(void)
         g_once_init_leave(&keys, made);
     }
     return keys;
+}
+
+/* Takes the keys of an option away; NULL: of all but styles. */
+static void drop_keys(FlRegionSettings *settings, const FlOption *option)
+{
+    for (guint i = settings->keyed ? settings->keyed->len : 0; i-- > 0;) {
+        const FlKeys *keys = g_ptr_array_index(settings->keyed, i);
+        if (option ? keys->option == option : keys->option->type != FL_OPTION_STYLE)
+            g_ptr_array_remove_index(settings->keyed, i);
+    }
+}
+
+/* The field of an option's number: a float in params, else a double. */
+static void *number_of(FlRegionSettings *settings, const FlOption *option)
+{
+    if (option->type != FL_OPTION_PARAM)
+        return (char *)settings + option->offset;
+    return (char *)&settings->params + fl_param_offset(fl_param_find(option->name));
+}
+
+static double amount_of(FlRegionSettings *settings, const FlOption *option)
+{
+    const void *const field = number_of(settings, option);
+    return option->type == FL_OPTION_PARAM ? (double)*(const float *)field : *(const double *)field;
+}
+
+void fl_region_settings_move(FlRegionSettings *settings, int frame)
+{
+    for (guint i = 0; settings->keyed && i < settings->keyed->len; i++) {
+        const FlKeys *keys = g_ptr_array_index(settings->keyed, i);
+        void *const field = number_of(settings, keys->option);
+        if (keys->option->type == FL_OPTION_DIAL)
+            *(double *)field = fl_keys_amount(keys, frame);
+        else if (keys->option->type == FL_OPTION_PARAM)
+            *(float *)field = (float)fl_keys_amount(keys, frame);
+    }
 }
 
 static void replace_string(char **field, char *value)
@@ -101,6 +138,7 @@ static bool store(FlRegionSettings *settings, const FlOption *option, const char
     case FL_OPTION_INT:
         return fl_text_integer(value, option->min, option->max, field);
     case FL_OPTION_DIAL:
+    case FL_OPTION_FIXED:
         return set_dial(option, value, field);
     case FL_OPTION_TINT:
         return set_tint(settings, value);
@@ -121,6 +159,7 @@ static bool set_preset(FlRegionSettings *settings, const char *value, GError **e
 {
     if (!fl_params_preset(&settings->params, value, error))
         return false;
+    drop_keys(settings, NULL);
     g_auto(FlRegionSettings) plain;
     fl_region_settings_init(&plain);
     const bool ours = strcmp(value, "default") == 0 || strcmp(value, "fluid") == 0;
@@ -148,14 +187,15 @@ static bool set_engine(FlRegionSettings *settings, const FlOption *option, const
         return false;
     if (settings->engine != before && settings->engine == FL_ENGINE_LAZYFLUIDS) {
         fl_params_preset(&settings->params, "fluid", NULL);
+        drop_keys(settings, NULL);
         if (settings->detail != FL_DETAIL_NORMAL)
             fl_params_detail(&settings->params, settings->detail);
     }
     return true;
 }
 
-bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const char *value,
-                            const char *folder, GError **error)
+static bool set_plain(FlRegionSettings *settings, const char *key, const char *value,
+                      const char *folder, GError **error)
 {
     const bool scale = strcmp(key, SCALE) == 0;
     const FlOption *option = fl_option_find(FL_SCOPE_REGION, key);
@@ -176,6 +216,66 @@ bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const c
     return false;
 }
 
+/* A folder may end as a key does. */
+static bool is_keyed(const FlOption *option, const char *value, const char *folder)
+{
+    g_autofree char *path = option->type == FL_OPTION_STYLE ? style_path(value, folder) : NULL;
+    return option->type != FL_OPTION_NAME && fl_keys_are(value) &&
+           (!path || !g_file_test(path, G_FILE_TEST_IS_DIR));
+}
+
+/* Checks each value of keys as a plain one would be; the first one is left in the field. */
+static bool set_keys(FlRegionSettings *settings, FlKeys *keys, const char *folder, GError **error)
+{
+    const FlOption *option = keys->option;
+    for (guint k = keys->key->len; k-- > 0;) {
+        FlKey *key = &g_array_index(keys->key, FlKey, k);
+        if (!set_plain(settings, option->name, key->value, folder, error))
+            return false;
+        if (option->type == FL_OPTION_STYLE)
+            replace_string(&key->value, g_strdup(settings->style));
+        else if (isnan(key->amount = amount_of(settings, option))) {
+            g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                        "%s: “%s” cannot be keyed; expected a number", option->name, key->value);
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool set_keyed(FlRegionSettings *settings, const FlOption *option, const char *value,
+                      const char *folder, GError **error)
+{
+    if (!fl_option_can_be_keyed(option)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: “%s” has keys, but this option is the same in all frames; "
+                    "fluidy-svg.conf(5) lists those that can be keyed",
+                    option->name, value);
+        return false;
+    }
+    g_autoptr(FlKeys) keys = fl_keys_read(option, option->type == FL_OPTION_STYLE, value, error);
+    if (!keys)
+        g_prefix_error(error, "%s: ", option->name);
+    if (!keys || !set_keys(settings, keys, folder, error))
+        return false;
+    if (!settings->keyed)
+        settings->keyed = g_ptr_array_new_with_free_func((GDestroyNotify)fl_keys_free);
+    g_ptr_array_add(settings->keyed, g_steal_pointer(&keys));
+    return true;
+}
+
+bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const char *value,
+                            const char *folder, GError **error)
+{
+    const FlOption *option =
+        fl_option_find(FL_SCOPE_REGION, strcmp(key, SCALE) == 0 ? "style-scale" : key);
+    if (option)
+        drop_keys(settings, option);
+    return option && is_keyed(option, value, folder)
+               ? set_keyed(settings, option, value, folder, error)
+               : set_plain(settings, key, value, folder, error);
+}
+
 void fl_region_settings_init(FlRegionSettings *settings)
 {
     *settings = (FlRegionSettings){0};
@@ -194,6 +294,7 @@ void fl_region_settings_clear(FlRegionSettings *settings)
     g_clear_pointer(&settings->style, g_free);
     g_clear_pointer(&settings->tile, g_free);
     g_clear_pointer(&settings->merge_with, g_free);
+    g_clear_pointer(&settings->keyed, g_ptr_array_unref);
 }
 
 bool fl_overrides_add(FlOverrides *overrides, const char *key, const char *value, GError **error)

@@ -111,6 +111,7 @@ typedef struct FlRegionSettings {
     FlPassthrough passthrough;
     char *merge_with; // another region's name, or NULL
     FlParams params;
+    GPtrArray *keyed; // of FlKeys: options whose fields have the first key's value; NULL: none
 } FlRegionSettings;
 
 void fl_region_settings_init(FlRegionSettings *settings); // the defaults
@@ -122,11 +123,16 @@ void fl_region_settings_clear(FlRegionSettings *settings);
  * synthesis makes it, without granulation, wash, hue, marks and drawn lines. The engine LazyFluids
  * brings the parameters of the preset fluid, unless a preset chose the engine.
  *
- * A relative path of a style is taken from `folder`; NULL: the working directory.
+ * A relative path of a style is taken from `folder`; NULL: the working directory. A value may be
+ * keyed, as fl_keys_read() has it, if the option can be; a plain one takes such keys away.
  * Returns: false with FL_ERROR_USAGE; the settings are then unchanged.
  */
 bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const char *value,
                             const char *folder, GError **error);
+
+/** Sets the fields of keyed options to their amounts in a frame, by its number. Copies of settings
+ * share the keys: those of a plan stay as they are while a painter's move. */
+void fl_region_settings_move(FlRegionSettings *settings, int frame);
 
 /** All keys that fl_region_settings_set() knows, NULL-terminated; static storage. */
 const char *const *fl_region_settings_keys(void);

@@ -65,6 +65,7 @@ void fl_painter_clear(FlPainter *painter)
 void fl_painter_follow(FlPainter *painter, const FlRegionPlan *region)
 {
     painter->own = *region;
+    painter->result.more = region->more;
 }
 
 void fl_painter_init(FlPainter *painter, const FlShapes *shapes, const FlRegionPlan *region,
@@ -82,6 +83,8 @@ void fl_painter_init(FlPainter *painter, const FlShapes *shapes, const FlRegionP
                                       .name = region->name,
                                       .settings = &painter->own.settings,
                                       .style = region->style,
+                                      .share = 1,
+                                      .more = region->more,
                                       .width = shapes->width,
                                       .height = shapes->height}};
     if (region->engine->exposure)
@@ -143,6 +146,10 @@ static bool make_sequence(FlPainter *painter, GError **error)
     fl_digest_add(&made_of, &params, sizeof params);
     fl_digest_add(&made_of, &dials, sizeof dials);
     fl_digest_add(&made_of, &settings->wetness, sizeof settings->wetness);
+    if (painter->plan->styles) { // its frames
+        fl_digest_add_text(&made_of, painter->plan->styles->text);
+        fl_digest_add(&made_of, &painter->plan->style_key, sizeof painter->plan->style_key);
+    }
     if (painter->sequence && fl_digest_is_same(made_of, painter->sequence_of))
         return true;
     fl_guide_sequence_free(painter->sequence);
@@ -262,9 +269,19 @@ static bool paint_picture(FlPainter *painter, int k, int index, GError **error)
     return painted;
 }
 
+/* Sets what is keyed to its values in a frame; without a drawing, frames are counted from 1. */
+static void move_settings(FlPainter *painter, int frame)
+{
+    const FlDrawing *drawing = painter->shapes->drawing;
+    fl_region_settings_move(&painter->own.settings,
+                            drawing ? fl_drawing_number(drawing, frame) : frame + 1);
+    painter->result.share = fl_region_share(painter->plan, drawing, frame);
+}
+
 bool fl_painter_lead_in(FlPainter *painter, int k, GError **error)
 {
     const FlLoop *loop = &painter->loop;
+    move_settings(painter, (loop->first + k) * painter->plan->settings.hold);
     return painter->origin == FL_FROM_NOWHERE || k >= loop->n ||
            (paint_picture(painter, k, loop->first + k, error) &&
             fl_loop_keep(&painter->loop, k, &painter->result, error));
@@ -288,6 +305,7 @@ bool fl_painter_frame(FlPainter *painter, int frame, GError **error)
     const int hold = painter->plan->settings.hold, index = frame / hold;
     if (painter->origin == FL_FROM_NOWHERE)
         return true;
+    move_settings(painter, index * hold);
     if (drawing) {
         const int region = painter->plan->region;
         painter->result.anchor = fl_drawing_anchor(drawing, region, index * hold);

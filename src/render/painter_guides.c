@@ -6,6 +6,7 @@
 #include "guides/half_guides.h"
 #include "guides/rim.h"
 #include <math.h>
+#include <string.h>
 
 /* ---- sources of guides --------------------------------------------------------------------- */
 
@@ -42,6 +43,10 @@ static bool film_mask(const FlPainter *painter, int shown, uint8_t *coverage, GE
 {
     const FlRect rect = painter->result.rect;
     const int region = painter->plan->region;
+    if (!fl_region_lives(painter->plan, painter->shapes->drawing, shown)) {
+        memset(coverage, 0, fl_rect_pixels(fl_painter_guided(painter)));
+        return true;
+    }
     return (halves(painter) ? fl_mask_store_get_half : fl_mask_store_get)(
         painter->shapes->masks, region, shown, rect, coverage, error);
 }

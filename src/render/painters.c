@@ -138,18 +138,28 @@ static void free_painter(FlPainters *painters, FlPainter *painter)
     g_free(painter);
 }
 
+/* Returns: true if earlier painters are those of a plan's regions, in order. */
+static bool same_regions(FlPainters before, const FlPlan *plan)
+{
+    bool same = before.n == plan->n_painted;
+    for (int p = 0; p < before.n && same; p++)
+        same = before.painter[p]->plan->region == plan->painted[p].region;
+    return same;
+}
+
 /* A painter for each region: that of an earlier plan with the same masks, or an empty one. */
 static void take_painters(FlPainters *painters, const FlPlan *plan)
 {
     const FlPainters before = *painters;
-    const bool same = before.plan && before.shapes.masks == plan->masks;
+    const bool same =
+        before.plan && before.shapes.masks == plan->masks && same_regions(before, plan);
     *painters = (FlPainters){.plan = plan, .n = plan->n_painted, .n_painted = before.n_painted};
     painters->painter = g_new0(FlPainter *, MAX(plan->n_painted, 1));
     painters->painted = g_new0(const FlPaintedRegion *, MAX(plan->n_painted, 1));
     painters->fresh = g_new0(bool, MAX(plan->n_painted, 1));
     painters->shapes = shapes_of(painters);
     for (int p = 0; p < before.n; p++)
-        if (same) // of the same regions in the same order
+        if (same)
             painters->painter[p] = before.painter[p];
         else
             free_painter(painters, before.painter[p]);

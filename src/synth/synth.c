@@ -27,7 +27,6 @@ FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynt
     synth->side = (float)MAX(frame_width, frame_height);
     synth->n_levels = MIN(exemplar->n_levels, fl_levels_of(frame_width, frame_height));
     synth->key = fl_hash64(seed);
-    fl_cost_scale_init(&synth->scale, params);
     fl_kernels_init(&synth->kernels, fl_cpu_flags());
     return synth;
 }
@@ -419,6 +418,7 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
     clear_frame(synth);
     forget_packed(synth);
     synth->moves = guides->has_motion && synth->params->carry > 0;
+    fl_cost_scale_init(&synth->scale, synth->params);
     synth->resting = resting, resting = (FlRestingParts){0};
     const FlRect box = whole_box(synth, guides), all = working_rect(synth, box);
     if (box.width == 0) {

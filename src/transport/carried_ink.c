@@ -156,11 +156,12 @@ static bool refine(FlCarriedInk *ink, const FlGuides *guides, float *velocity, G
     const FlRefinementInput input = {ink->input.patches, &ink->input.tile->style, ink->input.scale,
                                      ink->input.refine, fl_hash64(ink->input.seed)};
     const size_t n = fl_rect_pixels(ink->layers.old.rect);
+    const float strength = (float)*ink->input.strength;
     if (!fl_refinement_advance(&ink->refinement, &input, &ink->layers, guides, velocity, error))
         return false;
     for (size_t p = 0; p < n; p++) {
         float *v = velocity + 2 * p;
-        v[0] *= ink->input.strength, v[1] *= ink->input.strength;
+        v[0] *= strength, v[1] *= strength;
         hold(v, FARTHEST * ink->input.scale);
     }
     return true;
@@ -214,7 +215,8 @@ static bool find_map(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, FlF
         (layers->fresh.shift && !fl_material_whole(&layers->fresh, &layers->share, guides, reach,
                                                    whole + fl_rect_pixels(rect), error)))
         return false;
-    find_velocity(ink, guides, whole, ink->input.patches ? 1 : ink->input.strength, velocity);
+    find_velocity(ink, guides, whole, ink->input.patches ? 1 : (float)*ink->input.strength,
+                  velocity);
     if (ink->input.patches && !refine(ink, guides, velocity, error))
         return false;
     fl_flow_map_run(map, velocity);
@@ -304,7 +306,7 @@ bool fl_carried_ink_move(FlCarriedInk *ink, const FlGuides *guides, uint8_t *rgb
     g_auto(FlFlowMap) map = {0};
     if (!advance(ink, guides, rect, error))
         return false;
-    if (n == 0 || ink->input.strength == 0) // the bytes stay as they are
+    if (n == 0 || *ink->input.strength == 0) // the bytes stay as they are
         return true;
     g_autofree float *density = fl_alloc(2 * n, sizeof *density, "a density", error);
     if (!density || !find_map(ink, guides, rect, &map, error))

@@ -18,7 +18,7 @@ typedef struct FlCarriedInkInput {
     const FlSliced *patches; // of the style, for the refinement of each frame; NULL: no refinement
     int refine;              // iterations a frame
     float scale;             // px of the drawing per px of the tile
-    float strength;          // factor on the motion of ink; 0: flat
+    const double *strength;  // borrowed: factor on the motion of ink in the next frame; 0: flat
     uint64_t seed;           // decides where on the tile the region lies
     FlInkColour colour;
 } FlCarriedInkInput;

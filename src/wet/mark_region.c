@@ -277,7 +277,9 @@ bool fl_wet_mark_one(void *data, int m, int thread, GError **error)
     const int now = fl_wet_shown_by(plan, step->frame), before = before_that(wet, plan, now);
     g_array_set_size(marker->stains, 0);
     marker->partner = 1;
-    const bool shown = fl_mask_store_has(wet->plan->masks, plan->region, now);
+    fl_wet_turn_dials(wet, marker, now);
+    const bool shown = fl_region_share(plan, wet->plan->drawing, now) > 0 &&
+                       fl_mask_store_has(wet->plan->masks, plan->region, now);
     if (!shown || before < 0 || !fl_mask_store_has(wet->plan->masks, plan->region, before)) {
         forget(wet, marker);
         marker->partner = !shown || before < 0;

@@ -6,12 +6,22 @@
 #include "params/text.h"
 #include "wet/curves.h"
 
+static FlRegionSettings settings_in(const FlPlan *plan, const FlRegionPlan *region, int frame)
+{
+    FlRegionSettings settings = region->settings;
+    fl_region_settings_move(&settings, fl_drawing_number(plan->drawing, frame));
+    return settings;
+}
+
 static bool wants_marks(const FlPlan *plan, const FlRegionPlan *region)
 {
     const FlFrontStyle *style = &region->style->front;
-    const bool front = region->settings.front * style->width > 0;
-    return (front || region->settings.stain * style->stain > 0) &&
-           !fl_plan_hides(plan, region->region);
+    bool wants = false;
+    for (int f = 0; f < fl_drawing_frames(plan->drawing) && !wants; f++) {
+        const FlRegionSettings now = settings_in(plan, region, f);
+        wants = now.front * style->width > 0 || now.stain * style->stain > 0;
+    }
+    return wants && !fl_plan_hides(plan, region->region);
 }
 
 bool fl_wet_wanted(const FlPlan *plan)
@@ -51,22 +61,30 @@ static bool mean_half_width(const FlWet *wet, int region, float *width, GError *
     return true;
 }
 
-/** The dials of a region by its size: 0 for parts as large as the page, and for eyes and buttons.
+/** The size of a region as a factor on its dials: 0 for parts as large as the page, and for eyes
+ * and buttons.
  */
-static bool size_dials(const FlWet *wet, FlMarker *marker, GError **error)
+static bool find_size(const FlWet *wet, FlMarker *marker, GError **error)
 {
     const FlRegionPlan *plan = marker->plan;
     float width = 0;
     if (!mean_half_width(wet, plan->region, &width, error))
         return false;
     const float page = FL_WET_PAGE_PX * wet->sheet.px;
-    const float dial =
+    marker->size =
         (1 - fl_ease(0.22f, 0.40f, (float)fl_plan_share_of_page(wet->plan, plan->region))) *
         fl_ease(0.008f, 0.030f, width / page);
-    const double overrun = wet->plan->options.overrun;
-    marker->dials = (FlWetDials){&plan->style->front, dial * (float)plan->settings.front,
-                                 dial * (float)plan->settings.stain, (float)overrun};
     return true;
+}
+
+void fl_wet_turn_dials(const FlWet *wet, FlMarker *marker, int frame)
+{
+    const FlRegionSettings now = settings_in(wet->plan, marker->plan, frame);
+    // halfway from style to style both have their whole fronts
+    const float share = fl_region_share(marker->plan, wet->plan->drawing, frame);
+    const float dial = marker->size * MIN(2 * share, 1);
+    marker->dials = (FlWetDials){&marker->plan->style->front, dial * (float)now.front,
+                                 dial * (float)now.stain, (float)wet->plan->options.overrun};
 }
 
 /** The mean colour of the first frame with a region, for those of gradients and pictures. */
@@ -106,9 +124,9 @@ bool fl_wet_make_markers(FlWet *wet, GError **error)
         *marker = (FlMarker){.plan = &plan->painted[p]};
         if (!wants_marks(plan, marker->plan))
             continue;
-        if (!size_dials(wet, marker, error))
+        if (!find_size(wet, marker, error))
             return false;
-        if (marker->dials.front <= 0.001f && marker->dials.stain <= 0.001f)
+        if (marker->size <= 0.001f)
             continue;
         if (!find_fill(wet, marker, error))
             return false;

@@ -16,7 +16,8 @@ typedef bool (*FlWetMotion)(void *data, int region, int before, int now, FlRect 
 /** A region that marks the paper. */
 typedef struct FlMarker {
     const FlRegionPlan *plan;
-    FlWetDials dials;    // by its size in the film
+    float size;          // share of its dials that its size in the film leaves, 0..1
+    FlWetDials dials;    // of the last frame
     float fill[3];       // absorbance
     FlMovingEdge before; // in the frame before
     bool rests;
@@ -71,6 +72,9 @@ bool fl_wet_find_camera(const FlPlan *plan, int *camera, GError **error);
 
 /** Makes the regions that mark the paper. */
 bool fl_wet_make_markers(FlWet *wet, GError **error);
+
+/** Sets a marker's dials for a frame. */
+void fl_wet_turn_dials(const FlWet *wet, FlMarker *marker, int frame);
 
 /** The frame whose picture a region with a hold shows. */
 int fl_wet_shown_by(const FlRegionPlan *plan, int frame);
