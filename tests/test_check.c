@@ -1,4 +1,6 @@
 #include "base/alloc.h"
+#include "bundled_style.h"
+#include "style/estimate.h"
 #include "style/measure.h"
 #include "style/style_guides.h"
 
@@ -130,6 +132,49 @@ static void a_report_says_what_is_given_and_what_is_guessed(void)
     g_rmdir(temporary);
 }
 
+static FlFrontStyle front_of(const char *number, int n_frames)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *folder = bundled_style(number);
+    g_autoptr(FlStyle) style = fl_style_load(folder, &error);
+    FlFrontStyle front;
+    g_assert_no_error(error);
+    style->n_frames = MIN(style->n_frames, n_frames);
+    g_assert_true(fl_front_estimate(style, &front, &error));
+    return front;
+}
+
+/* The bundled numbers were chosen by eye. */
+static void fronts_are_found_as_an_eye_does(void)
+{
+    static const char *const wet[] = {"01", "02", "03", "05", "06", "07", "09"};
+    static const char *const dry[] = {"04", "08", "10"};
+    for (size_t k = 0; k < G_N_ELEMENTS(wet); k++) {
+        const FlFrontStyle front = front_of(wet[k], 99);
+        g_assert_cmpfloat(front.width, >, .9);
+        g_assert_cmpfloat(front.film, >, .1);
+    }
+    for (size_t k = 0; k < G_N_ELEMENTS(dry); k++) {
+        const FlFrontStyle front = front_of(dry[k], 99);
+        g_assert_cmpfloat(front.width, ==, 0);
+        g_assert_cmpfloat(front.film, ==, 0);
+        g_assert_cmpfloat(front.granulation, >, .8);
+    }
+    const FlFrontStyle bloom = front_of("01", 99), ink = front_of("02", 99),
+                       wash = front_of("05", 99);
+    g_assert_cmpfloat(bloom.soft, >, 2 * ink.soft);
+    g_assert_cmpfloat(ink.soft, >, 2 * wash.soft);
+    g_assert_cmpfloat(wash.line, >, bloom.line + .2f);
+    g_assert_cmpfloat(ink.base, >, bloom.base + .3f);
+}
+
+static void one_picture_has_a_front(void)
+{
+    const FlFrontStyle front = front_of("05", 1), all = front_of("05", 99);
+    g_assert_cmpfloat(front.width, ==, all.width);
+    g_assert_cmpfloat(fabsf(front.soft - all.soft), <, .15);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -141,5 +186,7 @@ int main(int argc, char **argv)
                     uneven_light_is_measured_in_levels);
     g_test_add_func("/check/a-report-says-what-is-given-and-what-is-guessed",
                     a_report_says_what_is_given_and_what_is_guessed);
+    g_test_add_func("/check/fronts-are-found-as-an-eye-does", fronts_are_found_as_an_eye_does);
+    g_test_add_func("/check/one-picture-has-a-front", one_picture_has_a_front);
     return g_test_run();
 }

@@ -2,6 +2,7 @@
 #include "base/exists.h"
 #include "base/headroom.h"
 #include "style/check_sheet.h"
+#include "style/estimate.h"
 #include "style/manifest.h"
 #include "style/measure.h"
 #include "style/style_guides.h"
@@ -108,6 +109,33 @@ static bool has_outline(const FlMeasures *measures)
         if (measures->orientation[i] > 0)
             return true;
     return false;
+}
+
+/* Paint changes while it is fresh: it is dry once it changes half as much as at first. */
+static void add_ages(Check *check)
+{
+    const FlMeasures *m = check->measures;
+    int dry = 1;
+    while (dry < m->n_frames && m->frame[dry].change > m->frame[0].change / 2)
+        dry++;
+    if (m->n_frames > 1 && dry < m->n_frames)
+        add(check->facts, "fresh      frames 1 to %d; it dries within %.2g s", dry,
+            (double)dry / (double)check->style->fps);
+    else if (m->n_frames > 1)
+        add(check->facts, "fresh      all frames: it does not dry in the recording");
+}
+
+static bool add_front(Check *check, GError **error)
+{
+    FlFrontStyle f;
+    if (!fl_front_estimate(check->style, &f, error))
+        return false;
+    add(check->facts,
+        "[front]    width %g, stain %g, film %g, soft %g, base %g, line %g, fingers %g, "
+        "granulation %g by the recording",
+        (double)f.width, (double)f.stain, (double)f.film, (double)f.soft, (double)f.base,
+        (double)f.line, (double)f.fingers, (double)f.granulation);
+    return true;
 }
 
 static void add_measured_facts(Check *check)
@@ -266,6 +294,7 @@ static void check_all(Check *check)
             "tile       transport.png: ink is moved, the frame is what it looks like");
     add_measured_facts(check);
     if (recorded) {
+        add_ages(check);
         find_mask_problems(check);
         find_motion_problems(check);
         find_texture_problems(check);
@@ -305,6 +334,8 @@ FlStyleReport *fl_style_check(const char *name, const char *sheet, bool overwrit
     g_autoptr(GPtrArray) problems = g_ptr_array_new_with_free_func(g_free);
     Check check = {style, measures, facts, problems};
     check_all(&check);
+    if (!moves_ink(style) && !add_front(&check, error))
+        return NULL;
     const FlCheckSheet drawing = {style, measures, guides, facts, problems};
     if (sheet && !fl_check_sheet_write(&drawing, sheet, error))
         return NULL;

@@ -3,6 +3,7 @@
 #define FLUIDY_STYLE_ESTIMATE_H
 
 #include "base/picture.h"
+#include "style/style_folder.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -25,6 +26,13 @@ void fl_paper_estimate(const FlClip *clip, const uint8_t *mask, uint8_t paper[3]
  * A frame without paint gets an empty mask. Returns: false with FL_ERROR_NO_MEMORY set.
  */
 bool fl_extract_masks(const FlClip *clip, const uint8_t paper[3], uint8_t *mask, GError **error);
+
+/**
+ * The behaviour of paint on paper, from its rim and grain: soft and light rims are wet, grain is
+ * dry. The first quarter of the frames is taken for fresh paint, the last for dry; one picture is
+ * both. The defaults where no paint is 16 px deep. FL_ERROR_NO_MEMORY.
+ */
+bool fl_front_estimate(const FlStyle *style, FlFrontStyle *front, GError **error);
 
 /** The mean coverage of a mask, 0..1. */
 double fl_mask_share(const uint8_t *mask, int width, int height);

@@ -272,6 +272,20 @@ static bool find_border(Import *import, GError **error)
     return true;
 }
 
+/* Where paint fills the frames there is no rim to look at. */
+static bool find_front(Import *import, GError **error)
+{
+    FlFrontStyle *front = &import->style->front;
+    if (import->options->whole)
+        return true;
+    if (!fl_front_estimate(import->style, front, error))
+        return false;
+    note(import, "%s paint: fronts %g wide, %g soft, with lines of %g and fingers of %g",
+         front->width >= .5f ? "wet" : "dry", (double)front->width, (double)front->soft,
+         (double)front->line, (double)front->fingers);
+    return true;
+}
+
 static void add_warnings(const Import *import)
 {
     const FlStyleImport *options = import->options;
@@ -306,7 +320,8 @@ bool fl_style_import(const FlStyleImport *options, GPtrArray *notes, GError **er
     if (!fl_headroom_check(error) || !check_options(options, style->paper, error) ||
         !fl_style_may_write(options->folder, options->overwrite, error) ||
         !read_all(&import, error) || !correct_frames(&import, error) ||
-        !fl_style_check_paint(style, error) || !find_border(&import, error))
+        !fl_style_check_paint(style, error) || !find_border(&import, error) ||
+        !find_front(&import, error))
         return false;
     add_warnings(&import);
     return fl_style_write(style, options->folder, options->overwrite, error);
