@@ -84,11 +84,10 @@ GBytes *fl_wet_save(const FlWet *wet, GError **error)
                                 .wet = wet->sheet.wet};
     for (int m = 0; m < wet->n_markers; m++) {
         const FlMarker *marker = &wet->marker[m];
-        const bool holds = marker->plan->settings.hold != wet->plan->hold;
         state.marker[m] = (MarkerState){.rect = marker->before.rect,
                                         .n_points = marker->before.n,
                                         .rests = marker->rests,
-                                        .n_fronts = holds ? (int32_t)marker->fronts->len : 0};
+                                        .n_fronts = (int32_t)marker->fronts->len};
     }
     if (!alloc_cells(&state, error))
         return NULL;
