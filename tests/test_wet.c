@@ -177,6 +177,41 @@ static void test_other_paint(void)
     scene_free(scene);
 }
 
+/* The most ink of the fronts of a disk of region 3 where paint of a region was seen: of any colour
+ * but the disk's own. */
+static float most_ink(int16_t region)
+{
+    static uint8_t rgb[3 * PIXELS];
+    static int16_t regions[PIXELS];
+    Scene *scene = scene_new();
+    float most = 0;
+    for (int p = 0; p < PIXELS; p++)
+        regions[p] = region;
+    const FlLaid laid = {SIDE, SIDE, 1, rgb, regions};
+    memset(rgb, 100, sizeof rgb);
+    memset(scene->shape.paper, 200, 3);
+    scene->shape.region = 3, scene->shape.laid = &laid;
+    mark(scene, 80, 86, 0);
+    g_assert_cmpuint(scene->fronts->len, >, 0);
+    for (guint i = 0; i < scene->fronts->len; i++) {
+        const float *ink = g_array_index(scene->fronts, FlFrontMark, i).ink;
+        g_assert_cmpfloat(fabsf(ink[0] - ink[2]), <, 1e-4f);
+        most = MAX(most, ink[0]);
+    }
+    scene_free(scene);
+    return most;
+}
+
+/* Paint that is seen runs ahead: that of a shape above, and none of a shape that has faded. */
+static void test_seen_paint(void)
+{
+    const float own = most_ink(3);
+    g_assert_cmpfloat(own, >, 0.1f);
+    g_assert_cmpfloat(most_ink(4), ==, own);
+    g_assert_cmpfloat(most_ink(2), ==, 0);
+    g_assert_cmpfloat(most_ink(-1), ==, 0);
+}
+
 /* The darkness of the green of a layer, summed. */
 static double darkness(const Scene *scene)
 {
@@ -232,6 +267,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/what-vanishes-leaves-less-than-what-recedes", test_vanish);
     g_test_add_func("/wet/fronts-go-with-a-shape-that-jumps", test_jump);
     g_test_add_func("/wet/paint-on-other-paint-marks-nothing", test_other_paint);
+    g_test_add_func("/wet/seen-paint-runs-ahead", test_seen_paint);
     g_test_add_func("/wet/marks-fade-until-none-is-left", test_dries);
     g_test_add_func("/wet/marks-and-grain-move-with-the-paper", test_moved);
     return g_test_run();

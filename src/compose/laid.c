@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include <string.h>
 
-#define LEAST_ALPHA 16 // of paint; edge pixels and bare rims have no colour of their own
+#define LEAST_ALPHA 8 // of paint; edge pixels and bare rims have no colour of their own
 
 bool fl_laid_init(FlLaid *laid, int width, int height, float cell_px, GError **error)
 {

@@ -236,8 +236,8 @@ static void find_kept(const FlWetShape *shape, float speed_before, FlEdgePoint *
                   (1 - fl_ease(1.3f, 2, shrunk / (moved + 3 * px)));
 }
 
-/** The absorbance of the region's paint, laid at a place in rect in the frame before. Returns:
- * false if it was hidden. */
+/** The absorbance of the paint seen at a place in rect in the frame before: the region's, or that
+ * of a shape above it. Returns: false if there was none. */
 static bool ink_at(const FlWetShape *shape, float x, float y, float ink[3])
 {
     const FlLaid *laid = shape->laid;
@@ -246,14 +246,15 @@ static bool ink_at(const FlWetShape *shape, float x, float y, float ink[3])
     if (!laid || px < 0 || py < 0 || px >= laid->width || py >= laid->height)
         return false;
     const size_t cell = (size_t)py * (size_t)laid->width + (size_t)px;
-    if (laid->region[cell] != shape->region)
+    if (laid->region[cell] < shape->region)
         return false;
     for (size_t c = 0; c < 3; c++)
         ink[c] = fl_wet_absorbance(laid->rgb[3 * cell + c], shape->paper[c]);
     return true;
 }
 
-/** The paint some way inside, as it was laid in the frame before. */
+/** The paint seen some way inside, as it was laid in the frame before; none where a shape has
+ * faded. Its fill, if that frame is not known. */
 static void find_ink(const FlWetShape *shape, FlEdgePoint *point)
 {
     float sum[3] = {0}, weight = 0;
@@ -269,7 +270,7 @@ static void find_ink(const FlWetShape *shape, FlEdgePoint *point)
         weight++;
     }
     for (int c = 0; c < 3; c++)
-        point->ink[c] = weight > 0 ? sum[c] / weight : shape->fill[c];
+        point->ink[c] = shape->laid ? sum[c] / MAX(weight, 1) : shape->fill[c];
 }
 
 static void link_points(FlRect rect, const FlMovingEdge *edge, Links *links)
