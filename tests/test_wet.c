@@ -104,6 +104,14 @@ static float front_outside(const Scene *scene, float x1, float *both)
     return right;
 }
 
+static float charge_of(const Scene *scene)
+{
+    float sum = 0;
+    for (guint i = 0; i < scene->stains->len; i++)
+        sum += g_array_index(scene->stains, FlStainMark, i).charge;
+    return sum;
+}
+
 static void test_ahead(void)
 {
     Scene *scene = scene_new();
@@ -115,6 +123,7 @@ static void test_ahead(void)
     g_assert_cmpuint(scene->stains->len, >, 200);
     for (guint i = 0; i < scene->stains->len; i++)
         g_assert_cmpint(g_array_index(scene->stains, FlStainMark, i).at % SIDE, <, 92);
+    g_assert_cmpfloat(charge_of(scene), >, 100);
     scene_free(scene);
 }
 
@@ -125,14 +134,6 @@ static void test_rest(void)
     g_assert_cmpuint(scene->fronts->len, ==, 0);
     g_assert_cmpuint(scene->stains->len, ==, 0);
     scene_free(scene);
-}
-
-static float charge_of(const Scene *scene)
-{
-    float sum = 0;
-    for (guint i = 0; i < scene->stains->len; i++)
-        sum += g_array_index(scene->stains, FlStainMark, i).charge;
-    return sum;
 }
 
 static void test_vanish(void)
