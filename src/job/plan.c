@@ -69,7 +69,7 @@ static void choose_size(FlPlan *plan, const FlPlan *before)
 }
 
 /* Options that exclude or need each other. */
-static bool check_merge(const FlRenderOptions *options, GError **error)
+static bool check_options(const FlRenderOptions *options, GError **error)
 {
     const char *wrong = NULL;
     if (options->merge && !options->paint)
@@ -77,6 +77,8 @@ static bool check_merge(const FlRenderOptions *options, GError **error)
                 "folder of ‘ebsynth’; use one of them too";
     else if (options->merge && (options->report || options->dump))
         wrong = "‘merge’ paints nothing that ‘report’ or ‘dump’ could show; use it alone";
+    else if (options->report && strcmp(options->report, "-") == 0)
+        wrong = "‘report’: “-” is standard output; expected a folder";
     else if (options->paint && !fl_output_is_pattern(options->paint))
         wrong = "‘paint’: one file for all frames; expected a number in the name, such as %04d";
     else if (options->part && !options->merge)
@@ -109,7 +111,7 @@ static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
                     "no input: expected SVG files, a folder, or a pattern such as input_%%04d.svg");
         return false;
     }
-    if (!check_merge(&plan->options, error) || !fl_plan_find_output(plan, error))
+    if (!check_options(&plan->options, error) || !fl_plan_find_output(plan, error))
         return false;
     if (plan->finished == FL_FINISHED_ALL ||
         (plan->options.verify && fl_digest_is_known(plan->made_from)))
