@@ -54,18 +54,18 @@ static void print_parameter(const char *field, const char *argument, bool has_ra
     if (strcmp(values[0], values[1]) != 0 || strcmp(values[0], values[2]) != 0)
         printf(", fluidymation %s, thesis %s", values[1], values[2]);
     if (strcmp(values[0], values[3]) != 0 || strcmp(values[0], values[4]) != 0)
-        printf(", lazyfluids %s, fluid %s", values[3], values[4]);
+        printf(",\nlazyfluids %s, lazyfluids-steady %s", values[3], values[4]);
     puts(".");
 }
 
 static void print_parameters(void)
 {
-#define FL_PARAM(type, field, unit, min, max, usual, fluidymation, thesis, lazyfluids, fluid,      \
+#define FL_PARAM(type, field, unit, min, max, usual, fluidymation, thesis, lazyfluids, steady,     \
                  help)                                                                             \
     print_parameter(#field, ARGUMENT_##type, strcmp(#type, "BOOL") != 0, min, max, unit,           \
                     (const char *[5]){TEXT_##type(usual), TEXT_##type(fluidymation),               \
                                       TEXT_##type(thesis), TEXT_##type(lazyfluids),                \
-                                      TEXT_##type(fluid)},                                         \
+                                      TEXT_##type(steady)},                                        \
                     help);
 #include "params/params.def"
 #undef FL_PARAM

@@ -437,6 +437,13 @@ result $? 'the presets of the papers have even paint'
 on_paper wash --wash 2 --hue 7.2 && on_paper older --load 0.4 --pigments 0.1 && same_paint wash &&
     same sheet/wash1.png sheet/older1.png && ! same sheet/wash1.png sheet/auto1.png
 result $? 'washes are composing, in the older words as well'
+steady=(whole -f 1-2 -s 01 -W 60)
+"$program" "${steady[@]}" --preset lazyfluids-steady -o 'sheet/steady%d.png' >out 2>err && ! grep -q 'older word' err &&
+    "$program" "${steady[@]}" --preset fluid -o 'sheet/older%d.png' -y >out 2>err &&
+    [ "$(grep -c '“fluid” is called “lazyfluids-steady” now' err)" = 1 ] && same sheet/steady2.png sheet/older2.png &&
+    "$program" "${steady[@]}" --preset lazyfluids -o 'sheet/paper%d.png' -q >out 2>err &&
+    ! same sheet/steady2.png sheet/paper2.png
+result $? 'an older word for a preset is read, and its newer one said'
 
 # What is written opens as it looks.
 if "$program" whole -s 01 -q -f 1 -o 'open/w%d.ora' >out 2>err; then

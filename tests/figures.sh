@@ -40,19 +40,19 @@ still="--tint keep --style-by-page off --style-scale 1 --motion auto"
 {
     figure uniformity 'LazyFluids, figures 2 and 13: uniformity' \
         'Nearest neighbours (w-uni 0) choose few patches, the smooth ones, and the picture washes out; with every patch used equally often the contrast stays, first frame to last.' \
-        lazyfluids,lazyfluids:w-uni=0,fluid "$out/turning" -s "$out/styles/fire" $still
+        lazyfluids,lazyfluids:w-uni=0,lazyfluids-steady "$out/turning" -s "$out/styles/fire" $still
     figure water 'LazyFluids, figure 10: another still' \
         'The same drawing with water: the net turns with the blob, as slanted lines in the slice show.' \
-        lazyfluids,fluid "$out/turning" -s "$out/styles/water" $still
+        lazyfluids,lazyfluids-steady "$out/turning" -s "$out/styles/water" $still
     figure coherence 'LazyFluids, section 4.4: the temporal term' \
         'Every level begins with the carried picture, so that even without the term (w-temp 0, unlike in the paper) texture follows the drawing, and changes faster on its way; more of it holds the texture more firmly: fewer breaks in the slice.' \
-        fluid:w-temp=0,fluid:w-temp=0.2,fluid:w-temp=1 "$out/turning" -s "$out/styles/fire" $still
+        lazyfluids-steady:w-temp=0,lazyfluids-steady:w-temp=0.2,lazyfluids-steady:w-temp=1 "$out/turning" -s "$out/styles/fire" $still
     figure turns 'LazyFluids, figure 8: quarter turns' \
         'With one orientation only (rotate off) a rim is right where the exemplar has one that faces the same way. This exemplar is a disc, which has them all: little changes, and what does is the direction of the net.' \
-        fluid,fluid:rotate=off "$out/turning" -s "$out/styles/water" $still -f 1-6
+        lazyfluids-steady,lazyfluids-steady:rotate=off "$out/turning" -s "$out/styles/water" $still -f 1-6
     figure blur 'LazyFluids, figure 9: motion blur' \
         'The output is blurred along its motion while the shutter is open, none at the middle and most at the rim; the next frame comes from the sharp one.' \
-        fluid,fluid:motion-blur=1,fluid:motion-blur=2 "$out/turning" -s "$out/styles/fire" $still -f 1-6
+        lazyfluids-steady,lazyfluids-steady:motion-blur=1,lazyfluids-steady:motion-blur=2 "$out/turning" -s "$out/styles/fire" $still -f 1-6
     width=360 # the presets of the papers count in pixels
     figure fluidymation 'Fluidymation, section 4: comparison with LazyFluids' \
         'Both see masks only, and the recording as it is, which LazyFluids plays in step with the film and from its beginning again. The recording begins with a drop: where its frame has little paint, LazyFluids must show all of it equally often, and small parts break up into spots; Fluidymation chooses frames with enough. What rests, rests in Fluidymation. The third row has the shutter open for a whole frame, as films of fluids do.' \

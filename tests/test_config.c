@@ -89,7 +89,7 @@ static void a_mistake_is_named_with_file_and_line(void)
         {"[region a]\nhold = 0", ":2: hold: “0” is not an integer from 1 to 1000"},
         {"[region a]\npreset = thesi",
          ":2: unknown preset “thesi”; the presets are default, "
-         "fluidymation, thesis, lazyfluids, fluid; did you mean “thesis”?"},
+         "fluidymation, thesis, lazyfluids, lazyfluids-steady; did you mean “thesis”?"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
         g_autofree char *path = write_config(cases[i].text);

@@ -164,7 +164,7 @@ static FlStyle *trimmed(void)
 static void a_trimmed_cut_out_paints_nothing_far_outside(void)
 {
     g_auto(Film) film;
-    film_init(&film, trimmed(), "fluid", "1");
+    film_init(&film, trimmed(), "lazyfluids-steady", "1");
     paint(&film, 2);
     double sum = 0, n = 0;
     for (int p = 0; p < PIXELS; p++)
@@ -197,7 +197,7 @@ static double spread_after(const char *preset, const char *uniform, int frames)
 static void contrast_stays_where_use_is_equal_and_goes_where_it_is_not(void)
 {
     const double strict = spread_after("lazyfluids", "1", 20);
-    const double off = spread_after("lazyfluids", "0", 20), sharp = spread_after("fluid", "1", 20);
+    const double off = spread_after("lazyfluids", "0", 20), sharp = spread_after("lazyfluids-steady", "1", 20);
     g_test_message("contrast against the exemplar: strict %.2f, nearest %.2f, sharp vote %.2f",
                    strict, off, sharp);
     g_assert_cmpfloat(sharp, >, .9);
@@ -265,7 +265,7 @@ static double difference(const uint8_t *now, const uint8_t *before, double turn)
 static void paint_turns_with_the_drawing(void)
 {
     g_auto(Film) film;
-    film_init(&film, still_of_blotches(), "fluid", "1");
+    film_init(&film, still_of_blotches(), "lazyfluids-steady", "1");
     turn_by(&film, .08);
     paint(&film, 12);
     g_autofree uint8_t *before = g_memdup2(film.rgb, sizeof film.rgb);
@@ -285,7 +285,7 @@ static void same_picture_on_any_thread_count(void)
     for (int threads = 1; threads <= 5; threads += 2) {
         g_auto(Film) film;
         omp_set_num_threads(threads);
-        film_init(&film, small_style(), "fluid", "1");
+        film_init(&film, small_style(), "lazyfluids-steady", "1");
         turn_by(&film, .05);
         paint(&film, 3);
         if (one)

@@ -25,7 +25,9 @@ typedef enum FlPreset {
     FL_PRESET_FLUIDYMATION, /**< "fluidymation": its table 1, 2021 */
     FL_PRESET_THESIS, /**< "thesis": the thesis on which the paper is based, 2021, section 4.5 */
     FL_PRESET_LAZYFLUIDS, /**< "lazyfluids": LazyFluids, 2015, section 5 */
-    FL_PRESET_FLUID,      /**< "fluid": the same method with what pictures are better for */
+    /** "lazyfluids-steady": the same method with what pictures are better for; "fluid" before 0.2
+     */
+    FL_PRESET_LAZYFLUIDS_STEADY,
     FL_PRESETS
 } FlPreset;
 
@@ -62,7 +64,7 @@ FL_API FlParams *fl_params_copy(const FlParams *params);
 FL_API void fl_params_free(FlParams *params); /**< NULL is fine */
 
 /** Sets all parameters to a preset by its name. FL_ERROR_USAGE. */
-FL_API bool fl_params_preset(FlParams *params, const char *preset, GError **error);
+FL_API bool fl_params_preset(FlParams *params, const char *word, GError **error);
 
 /**
  * Sets one parameter from text; decimal point is '.', whatever the locale.

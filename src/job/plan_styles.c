@@ -153,6 +153,19 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     return true;
 }
 
+/* Names the preset that an older word chose, once. */
+static void note_older_preset(const FlPlan *plan)
+{
+    for (int p = 0; p < plan->n_painted; p++)
+        if (plan->painted[p].settings.older_preset) {
+            send_line(plan, plan->options.note,
+                      "region %s: the preset “fluid” is called “lazyfluids-steady” now; the older "
+                      "word goes with the next release",
+                      plan->painted[p].name);
+            return;
+        }
+}
+
 double fl_plan_share_of_page(const FlPlan *plan, int region)
 {
     const FlRegion *r = fl_drawing_region(plan->drawing, region);
@@ -175,6 +188,7 @@ bool fl_plan_choose_styles(FlPlan *plan, GError **error)
     for (int p = 0; plan->surround && p < plan->n_painted; p++)
         if (!choose_style(plan, &plan->painted[p], error))
             return false;
+    note_older_preset(plan);
     memset(plan->paper, 255, sizeof plan->paper);
     if (plan->n_painted > 0 && plan->surround)
         memcpy(plan->paper, plan->painted[0].style->paper, sizeof plan->paper);

@@ -27,7 +27,7 @@ static const size_t offsets[N_PARAMS] = {
 #define TEXT_LIST(value) value
 
 static FlParamInfo infos[N_PARAMS] = {
-#define FL_PARAM(type, field, unit, min, max, usual, fluidymation, thesis, lazyfluids, fluid,      \
+#define FL_PARAM(type, field, unit, min, max, usual, fluidymation, thesis, lazyfluids, steady,     \
                  help)                                                                             \
     {#field,                                                                                       \
      FL_PARAM_##type,                                                                              \
@@ -35,7 +35,7 @@ static FlParamInfo infos[N_PARAMS] = {
      min,                                                                                          \
      max,                                                                                          \
      {TEXT_##type(usual), TEXT_##type(fluidymation), TEXT_##type(thesis), TEXT_##type(lazyfluids), \
-      TEXT_##type(fluid)},                                                                         \
+      TEXT_##type(steady)},                                                                        \
      help},
 #include "params/params.def"
 #undef FL_PARAM
@@ -43,8 +43,8 @@ static FlParamInfo infos[N_PARAMS] = {
 
 static const char *names[N_PARAMS + 1];
 
-const char *const fl_preset_names[] = {"default",    "fluidymation", "thesis",
-                                       "lazyfluids", "fluid",        NULL};
+const char *const fl_preset_names[] = {"default",    "fluidymation",      "thesis",
+                                       "lazyfluids", "lazyfluids-steady", NULL};
 
 /* The preprocessor knows fields only; the options have dashes. */
 static const FlParamInfo *table(void)
@@ -270,8 +270,14 @@ void fl_params_scale_lengths(FlParams *params, float px)
     params->flow_still *= px;
 }
 
-bool fl_params_preset(FlParams *params, const char *preset, GError **error)
+const char *fl_preset_word(const char *word)
 {
+    return strcmp(word, "fluid") == 0 ? "lazyfluids-steady" : word;
+}
+
+bool fl_params_preset(FlParams *params, const char *word, GError **error)
+{
+    const char *preset = fl_preset_word(word);
     for (int i = 0; fl_preset_names[i]; i++)
         if (strcmp(fl_preset_names[i], preset) == 0) {
             set_preset(params, i);

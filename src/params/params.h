@@ -56,4 +56,7 @@ size_t fl_param_offset(int index);
 /** The names of the presets, NULL-terminated; static storage. */
 extern const char *const fl_preset_names[];
 
+/** Returns: the name of the preset of an older word; any other word itself. */
+const char *fl_preset_word(const char *word);
+
 #endif

@@ -155,15 +155,18 @@ static bool store(FlRegionSettings *settings, const FlOption *option, const char
     }
 }
 
-static bool set_preset(FlRegionSettings *settings, const char *value, GError **error)
+static bool set_preset(FlRegionSettings *settings, const char *word, GError **error)
 {
+    const char *value = fl_preset_word(word);
     if (!fl_params_preset(&settings->params, value, error))
         return false;
     drop_keys(settings, NULL);
     g_auto(FlRegionSettings) plain;
     fl_region_settings_init(&plain);
-    const bool ours = strcmp(value, "default") == 0 || strcmp(value, "fluid") == 0;
-    const bool lazy = strcmp(value, "lazyfluids") == 0 || strcmp(value, "fluid") == 0;
+    const bool steady = strcmp(value, "lazyfluids-steady") == 0;
+    const bool ours = steady || strcmp(value, "default") == 0;
+    const bool lazy = steady || strcmp(value, "lazyfluids") == 0;
+    settings->older_preset = value != word;
     settings->engine = lazy                                       ? FL_ENGINE_LAZYFLUIDS
                        : settings->engine == FL_ENGINE_LAZYFLUIDS ? FL_ENGINE_AUTO
                                                                   : settings->engine;
@@ -186,7 +189,7 @@ static bool set_engine(FlRegionSettings *settings, const FlOption *option, const
     if (!store(settings, option, value, NULL))
         return false;
     if (settings->engine != before && settings->engine == FL_ENGINE_LAZYFLUIDS) {
-        fl_params_preset(&settings->params, "fluid", NULL);
+        fl_params_preset(&settings->params, "lazyfluids-steady", NULL);
         drop_keys(settings, NULL);
         if (settings->detail != FL_DETAIL_NORMAL)
             fl_params_detail(&settings->params, settings->detail);

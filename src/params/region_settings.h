@@ -111,7 +111,8 @@ typedef struct FlRegionSettings {
     FlPassthrough passthrough;
     char *merge_with; // another region's name, or NULL
     FlParams params;
-    GPtrArray *keyed; // of FlKeys: options whose fields have the first key's value; NULL: none
+    bool older_preset; // its preset was chosen by an older word
+    GPtrArray *keyed;  // of FlKeys: options whose fields have the first key's value; NULL: none
 } FlRegionSettings;
 
 void fl_region_settings_init(FlRegionSettings *settings); // the defaults
@@ -121,7 +122,7 @@ void fl_region_settings_clear(FlRegionSettings *settings);
  * Sets one thing from text: an option of FL_SCOPE_REGION; "scale" is read as style-scale. A preset
  * also sets the motion: the presets of the papers use the motion of masks only, and paint as the
  * synthesis makes it, without granulation, wash, hue, marks and drawn lines. The engine LazyFluids
- * brings the parameters of the preset fluid, unless a preset chose the engine.
+ * brings the parameters of the preset lazyfluids-steady, unless a preset chose the engine.
  *
  * A relative path of a style is taken from `folder`; NULL: the working directory. A value may be
  * keyed, as fl_keys_read() has it, if the option can be; a plain one takes such keys away.

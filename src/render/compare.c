@@ -318,10 +318,10 @@ static const Variant methods[] = {
      "LazyFluids, 2015, section 5: motion from the masks carries the last picture; every patch is "
      "used equally often; the recording goes in step with the film and begins again after its end.",
      PRESET("lazyfluids")},
-    {"fluid",
+    {"lazyfluids-steady",
      "The same with the drawing's own motion, a firmer hold on the last picture and a sharper "
      "vote.",
-     PRESET("fluid")},
+     PRESET("lazyfluids-steady")},
     {"transport",
      "Transport: each region moves its own ink until it looks like the style, Pools unless another "
      "one is given, and keeps its amount.",
@@ -329,8 +329,9 @@ static const Variant methods[] = {
      {{.name = "engine", .value = "transport"}, {.name = "style", .value = "pools"}}},
 };
 
-static const Variant *find_method(const char *name, GError **error)
+static const Variant *find_method(const char *word, GError **error)
 {
+    const char *name = fl_preset_word(word);
     const char *names[G_N_ELEMENTS(methods) + 1] = {NULL};
     for (size_t k = 0; k < G_N_ELEMENTS(methods); k++) {
         names[k] = methods[k].name;
@@ -352,6 +353,8 @@ static bool read_method(const char *text, char **parts, Variant *variant, GError
         return false;
     *variant = *method;
     variant->name = text;
+    if (fl_preset_word(parts[0]) != parts[0]) // the plan notes an older word
+        variant->setting[0].value = parts[0];
     for (int k = 1; parts[k]; k++) {
         char *value = strchr(parts[k], '=');
         if (!value || variant->n == SETTINGS_MOST) {
