@@ -154,6 +154,27 @@ static void another_style_paints_its_region_alone(void)
     g_assert_cmpint(fl_film_stats(test->film)->n_read, ==, 1);
 }
 
+static void what_is_kept_is_bounded(void)
+{
+    enum { HELD = 16 * 2 * 2 }; // choices, regions and frames
+    g_autoptr(Case) test = case_new();
+    set(test->film, NULL, "frames", "0-1");
+    set(test->film, NULL, "detail", "draft");
+    for (int seed = 1; painted(test->film) < HELD; seed++) {
+        g_autofree char *value = g_strdup_printf("%d", seed);
+        set(test->film, NULL, "seed", value);
+        g_free(frame_of(test->film, 0));
+    }
+    set(test->film, NULL, "seed", "1");
+    g_free(frame_of(test->film, 0));
+    g_assert_cmpint(painted(test->film), ==, HELD);
+    set(test->film, NULL, "seed", "1000");
+    g_free(frame_of(test->film, 0));
+    set(test->film, NULL, "seed", "2"); // whose pictures gave way
+    g_free(frame_of(test->film, 0));
+    g_assert_cmpint(painted(test->film), ==, HELD + 4);
+}
+
 static void drafts_loops_and_holds_are_as_written(void)
 {
     const char *const changes[][2] = {
@@ -331,6 +352,7 @@ int main(int argc, char **argv)
     TEST(frames_come_in_any_order);
     TEST(what_is_composed_only_paints_nothing);
     TEST(another_style_paints_its_region_alone);
+    TEST(what_is_kept_is_bounded);
     TEST(drafts_loops_and_holds_are_as_written);
     TEST(two_films_in_two_threads);
     TEST(drafts_come_at_once_and_leave_frames_alone);

@@ -14,9 +14,9 @@ G_BEGIN_DECLS
  *
  * What a change does not touch is kept: after another "tint" or "paper" frames are only composed
  * again, after another "style" of a region that region alone is painted again, and after a change
- * of anything about paint the drawing is not read again. Painted pictures stay in memory, up to
- * 512 MiB, or an eighth of the limit ‘memory’, of frames and of drafts each, so that a choice that
- * is taken back shows the earlier pictures at once.
+ * of anything about paint the drawing is not read again. Painted pictures stay in memory, as many
+ * as 16 films have, and up to 512 MiB, or an eighth of the limit ‘memory’, of frames and of drafts
+ * each, so that a choice that is taken back shows the earlier pictures at once.
  *
  * Threads: one film belongs to one thread at a time; several threads may have a film each. While
  * the process has a single thread, drawings are read and drawn in child processes, which are

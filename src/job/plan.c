@@ -12,6 +12,7 @@
 #include <string.h>
 
 #define LARGE_PX 3000000
+#define KEPT_CHOICES 16 // as many times all pictures of the film are in memory
 #define SMALL_PX 500000 // that are painted: up to here a heap for each thread takes little
 
 /* Options that decide paint, but not the drawing. */
@@ -129,6 +130,8 @@ static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
         !fl_plan_choose_styles(plan, error))
         return false;
     list_inputs(plan);
+    fl_store_hold_most(plan->cache,
+                       (guint)(KEPT_CHOICES * plan->n_painted * fl_drawing_frames(plan->drawing)));
     return (!plan->options.merge || plan->finished == FL_FINISHED_FRAMES ||
             look_at_paint(plan, error));
 }

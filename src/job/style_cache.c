@@ -12,6 +12,7 @@
 #define BYTES_OF_REST 9.0               // while it is loaded
 #define WINDOW_BYTES (1024.0 * 1048576) // of one style
 #define UNUSED_BYTES (384.0 * 1048576)  // of styles that the plan no longer uses
+#define MOST_UNUSED 24                  // styles; a page shows samples of all
 
 struct FlStyleCache {
     const FlRenderOptions *options;
@@ -169,12 +170,13 @@ static double bytes_of(const FlStyleInstance *instance)
 void fl_style_cache_trim(FlStyleCache *cache, GPtrArray *used)
 {
     double bytes = 0;
+    int n = 0;
     for (guint i = cache->instances->len; i-- > 0;) {
         const FlStyleInstance *instance = cache->instances->pdata[i];
         if (g_ptr_array_find(used, instance, NULL))
             continue;
         bytes += bytes_of(instance);
-        if (bytes > UNUSED_BYTES)
+        if (bytes > UNUSED_BYTES || ++n > MOST_UNUSED)
             g_ptr_array_remove_index(cache->instances, i);
     }
 }

@@ -28,6 +28,7 @@ struct FlStore {
     GMutex lock;            // of what follows
     GHashTable *link;       // of the pictures in `held`, by name
     GQueue held;            // of HeldPicture; the one used last is the first
+    guint most_held;
     size_t held_bytes;
     char *problem; // to be told; may be NULL
     bool told;     // one was
@@ -59,6 +60,7 @@ FlStore *fl_store_open(const FlStoreOptions *options)
                             : g_strdup(folder);
     store->limit = MIB * (options->mib > 0 ? options->mib : DEFAULT_MIB);
     store->link = g_hash_table_new(hash_of, is_same);
+    store->most_held = G_MAXUINT;
     g_mutex_init(&store->lock);
     return store;
 }
@@ -93,11 +95,11 @@ static GBytes *held_bytes(FlStore *store, FlKept kind, FlDigest name)
 
 static void hold(FlStore *store, FlDigest name, const FlSpan *parts, int n)
 {
-    GByteArray *all = g_byte_array_new();
+    g_autoptr(GByteArray) all = g_byte_array_new();
     for (int k = 0; k < n; k++)
         g_byte_array_append(all, parts[k].data, (guint)parts[k].bytes);
     HeldPicture *held = g_new(HeldPicture, 1);
-    *held = (HeldPicture){name, g_byte_array_free_to_bytes(all)};
+    *held = (HeldPicture){name, g_bytes_new(all->data, all->len)}; // an array has room to grow
     g_mutex_lock(&store->lock);
     GList *before = g_hash_table_lookup(store->link, &name);
     if (before)
@@ -105,8 +107,17 @@ static void hold(FlStore *store, FlDigest name, const FlSpan *parts, int n)
     g_queue_push_head(&store->held, held);
     g_hash_table_insert(store->link, &held->name, store->held.head);
     store->held_bytes += g_bytes_get_size(held->bytes);
-    while (store->held_bytes > store->options.memory)
+    while (store->held_bytes > store->options.memory || store->held.length > store->most_held)
         let_go(store, store->held.tail);
+    g_mutex_unlock(&store->lock);
+}
+
+void fl_store_hold_most(FlStore *store, guint n)
+{
+    if (!store)
+        return;
+    g_mutex_lock(&store->lock);
+    store->most_held = n;
     g_mutex_unlock(&store->lock);
 }
 
