@@ -43,7 +43,7 @@ static void film_init(Film *film, FlStyle *style, const char *preset, const char
     film->exemplar = fl_exemplar_new(film->style, film->params, &error);
     g_assert_no_error(error);
     const FlSynthSize size = {SIDE, SIDE, SIDE, SIDE};
-    film->lazy = fl_lazy_new(film->exemplar, film->params, size, 3, &error);
+    film->lazy = fl_lazy_new(film->exemplar, film->params, FL_RECORDING_WRAP, size, 3, &error);
     g_assert_true(fl_guides_init(&film->guides, SIDE, SIDE, &error));
     for (int p = 0; p < PIXELS; p++) {
         const double x = p % SIDE - 35.5, y = p / SIDE - 35.5, inside = 30 - hypot(x, y);
@@ -197,7 +197,8 @@ static double spread_after(const char *preset, const char *uniform, int frames)
 static void contrast_stays_where_use_is_equal_and_goes_where_it_is_not(void)
 {
     const double strict = spread_after("lazyfluids", "1", 20);
-    const double off = spread_after("lazyfluids", "0", 20), sharp = spread_after("lazyfluids-steady", "1", 20);
+    const double off = spread_after("lazyfluids", "0", 20),
+                 sharp = spread_after("lazyfluids-steady", "1", 20);
     g_test_message("contrast against the exemplar: strict %.2f, nearest %.2f, sharp vote %.2f",
                    strict, off, sharp);
     g_assert_cmpfloat(sharp, >, .9);
@@ -277,6 +278,31 @@ static void paint_turns_with_the_drawing(void)
                    against);
     g_assert_cmpfloat(with, <, .45 * without);
     g_assert_cmpfloat(with, <, .8 * against);
+}
+
+/* Frame k of the recording has the grey 40 (k + 1) all over. */
+static void a_recording_ends_as_is_asked(void)
+{
+    static const int frames[][6] = {[FL_RECORDING_WRAP] = {0, 1, 2, 0, 1, 2},
+                                    [FL_RECORDING_PING_PONG] = {0, 1, 2, 1, 0, 1},
+                                    [FL_RECORDING_HOLD] = {0, 1, 2, 2, 2, 2}};
+    for (int end = 0; end < 3; end++) {
+        g_auto(Film) film;
+        FlStyle *style = small_style();
+        style->n_frames = 3;
+        for (int p = 0; p < 3 * STYLE_W * STYLE_H; p++) {
+            style->mask[p] = 255;
+            memset(style->rgb + 3 * p, 40 * (p / (STYLE_W * STYLE_H) + 1), 3);
+        }
+        film_init(&film, style, "lazyfluids", "1");
+        const FlSynthSize size = {SIDE, SIDE, SIDE, SIDE};
+        fl_lazy_free(film.lazy);
+        film.lazy = fl_lazy_new(film.exemplar, film.params, (FlRecordingEnd)end, size, 3, NULL);
+        for (int f = 0; f < 6; f++) {
+            paint(&film, 1);
+            g_assert_cmpint(film.rgb[3 * (36 * SIDE + 36)], ==, 40 * (frames[end][f] + 1));
+        }
+    }
 }
 
 static void same_picture_on_any_thread_count(void)
@@ -437,6 +463,7 @@ int main(int argc, char **argv)
     g_test_add_func("/lazy/a-trimmed-cut-out-paints-nothing-far-outside",
                     a_trimmed_cut_out_paints_nothing_far_outside);
     g_test_add_func("/lazy/paint-turns-with-the-drawing", paint_turns_with_the_drawing);
+    g_test_add_func("/lazy/a-recording-ends-as-is-asked", a_recording_ends_as_is_asked);
     g_test_add_func("/lazy/same-picture-on-any-thread-count", same_picture_on_any_thread_count);
     g_test_add_func("/lazy/a-state-that-was-saved-goes-on-as-it-would-have",
                     a_state_that_was_saved_goes_on_as_it_would_have);

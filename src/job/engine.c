@@ -57,8 +57,8 @@ static bool patch_load(void *state, GBytes *bytes, GError **error)
 
 static void *lazy_open(const FlEngineInput *input, GError **error)
 {
-    return fl_lazy_new(input->style->exemplar, &input->settings->params, input->size, input->seed,
-                       error);
+    return fl_lazy_new(input->style->exemplar, &input->settings->params,
+                       input->settings->recording_end, input->size, input->seed, error);
 }
 
 static void lazy_close(void *state)

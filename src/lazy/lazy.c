@@ -35,6 +35,7 @@ struct FlLazy {
     int width, height, n_levels;
     uint64_t key;
     FlLazyState last;
+    FlRecordingEnd end;
     FlFluidExemplar source;     // of the frame in hand
     Level level[FL_MAX_LEVELS]; // likewise; the planes of level 0 are kept after the frame if it is
                                 // inspected
@@ -60,11 +61,11 @@ float fl_lazy_reach(const FlExemplar *exemplar, const FlParams *params)
     return OUTER * sigma_of(exemplar, params) + 2 * FL_PATCH_RADIUS; // a patch's corner
 }
 
-FlLazy *fl_lazy_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
-                    uint64_t seed, GError **error)
+FlLazy *fl_lazy_new(const FlExemplar *exemplar, const FlParams *params, FlRecordingEnd end,
+                    FlSynthSize size, uint64_t seed, GError **error)
 {
     g_autoptr(FlLazy) lazy = g_new0(FlLazy, 1);
-    lazy->exemplar = exemplar, lazy->params = params;
+    lazy->exemplar = exemplar, lazy->params = params, lazy->end = end;
     lazy->width = size.width, lazy->height = size.height;
     lazy->sigma_px = sigma_of(exemplar, params);
     lazy->n_levels = MIN(exemplar->n_levels, fl_levels_of(size.frame_width, size.frame_height));
@@ -102,12 +103,16 @@ void fl_lazy_free(FlLazy *lazy)
 
 /* ---- the target ------------------------------------------------------------------------------ */
 
-/* The frame of the exemplar that goes with a frame: it begins again after its last. */
+/* The frame of the exemplar that goes with a frame, which is -1 or more. */
 static int frame_in_step(const FlLazy *lazy, int frame)
 {
     const FlExemplarLevel *full = &lazy->exemplar->level[0];
-    const int n = full->window;
-    return full->first + (frame % n + n) % n;
+    const int n = full->window, last = n - 1;
+    if (lazy->end == FL_RECORDING_HOLD)
+        return full->first + CLAMP(frame, 0, last);
+    if (lazy->end == FL_RECORDING_PING_PONG)
+        return full->first + (last > 0 ? last - abs(last - abs(frame) % (2 * last)) : 0);
+    return full->first + (frame + n) % n;
 }
 
 static bool pack_source(FlLazy *lazy, GError **error)

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_LAZY_LAZY_H
 #define FLUIDY_LAZY_LAZY_H
 
+#include "params/region_settings.h"
 #include "synth/guide_pairs.h"
 #include "synth/synth.h"
 
@@ -16,12 +17,12 @@
 typedef struct FlLazy FlLazy;
 
 /** The exemplar and params must outlive it. */
-FlLazy *fl_lazy_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
-                    uint64_t seed, GError **error);
+FlLazy *fl_lazy_new(const FlExemplar *exemplar, const FlParams *params, FlRecordingEnd end,
+                    FlSynthSize size, uint64_t seed, GError **error);
 void fl_lazy_free(FlLazy *lazy); // NULL is fine
 
 /**
- * Paints the next frame with the exemplar's frame in step, which begins again after its last. rgb:
+ * Paints the next frame with the exemplar's frame in step; see FlRecordingEnd. rgb:
  * width * height * 3 sRGB, its paper without paint: as composited over the paper, but straight
  * colours for a cut-out. alpha: width * height, synthesised as the colours are; or NULL. An empty
  * mask makes the next frame a first frame. Disposable guides are cleared before paint is made.

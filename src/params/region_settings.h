@@ -73,6 +73,13 @@ typedef enum FlPassthrough {
     FL_PASSTHROUGH_YES,  // it is drawn as it is
 } FlPassthrough;
 
+/** The frame that follows the last one of a recording which is played in step with the film. */
+typedef enum FlRecordingEnd {
+    FL_RECORDING_WRAP,      // the first
+    FL_RECORDING_PING_PONG, // the one before, and so back to the first
+    FL_RECORDING_HOLD,      // the last
+} FlRecordingEnd;
+
 /** The settings of one region, completely resolved. */
 typedef struct FlRegionSettings {
     char *style; // a name or a path; NULL: not set
@@ -108,6 +115,7 @@ typedef struct FlRegionSettings {
     double wetness; // share of the fluid in the motion; NAN: the engine's
     int hold;       // frames, 1..1000
     bool reverse;
+    FlRecordingEnd recording_end; // of LazyFluids
     FlPassthrough passthrough;
     char *merge_with; // another region's name, or NULL
     FlParams params;
