@@ -62,6 +62,7 @@ static Tones *lay_frame(const FlDrawing *drawing, int frame, const FlWashStyle *
                                       .settings = &settings,
                                       .style = &instance,
                                       .from = FL_FROM_ENGINE,
+                                      .share = 1,
                                       .anchor = fl_drawing_anchor(drawing, r, frame)};
         region[r].n_limbs = fl_drawing_limbs(drawing, r, frame, region[r].limb);
         painted[r] = &region[r], painted_of[r] = r;

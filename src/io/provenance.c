@@ -33,7 +33,9 @@ static Mapped map_file(int fd)
         return (Mapped){0};
     const size_t bytes = (size_t)info.st_size;
     void *data = mmap(NULL, bytes, PROT_READ, MAP_SHARED, fd, 0);
-    return data == MAP_FAILED ? (Mapped){0} : (Mapped){data, bytes};
+    if (data == MAP_FAILED)
+        return (Mapped){0};
+    return (Mapped){data, bytes};
 }
 
 static void unmap(Mapped *file)

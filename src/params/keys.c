@@ -77,7 +77,8 @@ FlKeys *fl_keys_read(const struct FlOption *option, bool replace, const char *te
     g_autoptr(GRegex) form =
         g_regex_new("\\s*(\\S.*?)@(-?[0-9]+)(?:~([0-9]+))?(?:\\s+|$)", 0, 0, NULL);
     g_autoptr(GMatchInfo) match = NULL;
-    bool good = g_regex_match(form, text, 0, &match);
+    bool good = g_regex_match(form, text, 0, &match) ||
+                usage(error, "“%s” has no value before its frame; expected VALUE@FRAME", text);
     while (good && g_match_info_matches(match)) {
         good = add_key(keys, match, error);
         g_match_info_next(match, NULL);
