@@ -106,7 +106,7 @@ static void show(const char *folder, const Options *o)
     int fields = 0;
     for (int r = 0; r < fl_drawing_regions(drawing); r++)
         for (int f = 0; f < fl_drawing_frames(drawing); f++) {
-            FlMotionShares shares = {0};
+            FlMotionShares shares = {0, 0};
             if (!fl_drawing_region(drawing, r)->paintable)
                 continue;
             const gint64 start = g_get_monotonic_time();

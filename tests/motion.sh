@@ -62,22 +62,6 @@ paint_disc carried_dump --flow $slide --dump carried_motion && same carried_dump
     same carried_again carried
 result $? 'so does its motion'
 
-# A block slides and swells in its last frame. In the film loose its outline has a node more in some frames, in which a fluid may move it.
-mkdir -p late/fixed late/loose late/cut
-for i in 1 2 3 4 5 6; do
-    swell=$((i == 6 ? 4 : 0))
-    for kind in fixed loose; do
-        top=$([ $kind = loose ] && [ $i -lt 5 ] && [ $((i % 2)) = 1 ] && echo h9h11 || echo h20)
-        echo "<svg xmlns='http://www.w3.org/2000/svg' width='56' height='56'>" \
-            "<path d='M$((4 + 3 * i)),16${top}v20q-10,$swell -20,0z' fill='#aa3311'/></svg>" >late/$kind/w_000$i.svg
-    done
-done
-cp late/fixed/w_000[56].svg late/cut
-for kind in fixed loose cut; do
-    "$program" late/$kind -s "$style" --fluid water --wetness 1 --dump late/$kind-dump -o late/$kind-w_%04d.png -q >out 2>err || break
-done && cmp -s late/{fixed,loose}-dump/*/motion_0006.flo && ! cmp -s late/{fixed,cut}-dump/*/motion_0006.flo
-result $? 'a fluid that has moved no paint yet has flowed all the same'
-
 # motion_of FILE: what is in the middle of the disc of frame 1, tenths of px to the right.
 motion_of() {
     local middle=$((12 + 8 * (28 * 56 + 24)))

@@ -9,7 +9,7 @@
 static const char *const option_samples[][2] = {
     {"canvas", "80x80+1+2"}, {"flow", "none_%d.flo"},  {"format", "png16"}, {"frames", "1-2"},
     {"missing", "skip"},     {"paint", "p_%d.png"},    {"style", "paper"},  {"config", "tint.conf"},
-    {"layers", "l_%d.png"},  {"stats", "figures.txt"},
+    {"layers", "l_%d.png"},  {"stats", "figures.txt"},  {"fluid", "smoke"},
 };
 
 /** A value of an option that is not its default; to be freed. */

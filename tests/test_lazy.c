@@ -156,8 +156,10 @@ static FlStyle *trimmed(void)
             style->rgb[3 * p + c] =
                 style->mask[p] ? (uint8_t)(60 + 100 * small_blotches(x + 24, y + 24)) : 250;
     }
+    style->fluid = FL_FLUID_SMOKE;
     FlStyle *used = fl_style_adapt(style, &(FlStyleUse){.start = 1, .step = 1, .scale = 1}, &error);
     g_assert_no_error(error);
+    g_assert_cmpint(used->fluid, ==, FL_FLUID_SMOKE);
     return used;
 }
 

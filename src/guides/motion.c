@@ -392,20 +392,15 @@ static void leave_unknown(const Work *w, int32_t label, FlRect box)
         }
 }
 
-/** True if a fluid may move a pixel: its leaf is neither still nor affine. */
-static bool is_loose(const Work *w, size_t p)
-{
-    const int32_t label = w->label[p];
-    const FlMotionKind kind =
-        label == UNLABELLED ? FL_MOTION_REGISTERED : motion_of(w, label - 1)->kind;
-    return kind != FL_MOTION_STILL && kind != FL_MOTION_AFFINE;
-}
-
 /** The share of a fluid in the motion of a pixel. */
 static float fluid_at(const Work *w, size_t p)
 {
     const FlMovingRegion *r = w->region;
-    return r->fluid && is_loose(w, p) && !isnan(r->fluid[2 * p]) ? r->wetness : 0;
+    const int32_t label = w->label[p];
+    const FlMotionKind kind =
+        label == UNLABELLED ? FL_MOTION_REGISTERED : motion_of(w, label - 1)->kind;
+    const bool fixed = kind == FL_MOTION_STILL || kind == FL_MOTION_AFFINE;
+    return r->fluid && !fixed && !isnan(r->fluid[2 * p]) ? r->wetness : 0;
 }
 
 /** True if a fluid alone moves a leaf, so that nothing else need be found out. */
@@ -455,12 +450,11 @@ static bool finish(Work *w, FlMotionShares *shares, GError **error)
     const FlMovingRegion *r = w->region;
     const float most = (float)r->side;
     bool any = false;
-    FlMotionShares sum = {0};
+    FlMotionShares sum = {0, 0};
     for (size_t p = 0; p < (size_t)w->w * w->h; p++) {
         if (r->mask_now[p] == 0)
             continue;
         any |= w->label[p] == UNLABELLED && fluid_at(w, p) < 1;
-        sum.loose += is_loose(w, p);
         if (r->mask_now[p] >= FL_INSIDE)
             *(by_masks(w, w->label[p]) ? &sum.registered : &sum.exact) += 1;
     }

@@ -18,11 +18,10 @@ typedef struct FlMovingRegion {
     float wetness;      // its share in the motion of leaves that are neither still nor affine, 0..1
 } FlMovingRegion;
 
-/** Pixel counts by the source of their motion, pixels with coverage >= FL_INSIDE unless noted. */
+/** Pixel counts by the source of their motion, pixels with coverage >= FL_INSIDE. */
 typedef struct FlMotionShares {
     int64_t exact;      // from outlines
     int64_t registered; // from masks
-    int64_t loose;      // of any coverage, of leaves that are neither still nor affine
 } FlMotionShares;
 
 /**

@@ -47,7 +47,8 @@ static void unmap(Mapped *file)
 
 static bool is_png(const Mapped *file)
 {
-    return file->bytes > sizeof png_head && memcmp(file->data, png_head, sizeof png_head) == 0;
+    return file->data && file->bytes > sizeof png_head &&
+           memcmp(file->data, png_head, sizeof png_head) == 0;
 }
 
 static void put_digits(FlDigest digest, char text[DIGITS + 1])

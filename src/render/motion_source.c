@@ -213,7 +213,7 @@ bool fl_motion_source_get(FlMotionSource *source, const FlRegionStep *step, floa
     const FlRect rect = source->halved ? fl_rect_halved(step->rect) : step->rect;
     const size_t n = fl_rect_pixels(rect);
     if (shares)
-        *shares = (FlMotionShares){0};
+        *shares = (FlMotionShares){0, 0};
     memset(motion, 0, 2 * n * sizeof *motion);
     if (fl_drawing_same_file(source->drawing, before, now))
         return true;

@@ -153,7 +153,9 @@ static bool make_sequence(FlPainter *painter, GError **error)
     if (painter->sequence && fl_digest_is_same(made_of, painter->sequence_of))
         return true;
     fl_guide_sequence_free(painter->sequence);
-    painter->sequence = fl_guide_sequence_new(&source, &params, error);
+    painter->sequence = fl_painter_open_fluid(painter, error)
+                            ? fl_guide_sequence_new(&source, &params, error)
+                            : NULL;
     fl_painter_close_fluid(painter);
     painter->sequence_of = made_of;
     return painter->sequence != NULL;

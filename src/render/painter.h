@@ -25,8 +25,7 @@ typedef struct FlPainter {
     bool follows;      // a picture was painted before, in this render or an earlier one
     int asked, answer; // a picture, and the one around which its depth is measured
     double cost_s;  // of the last picture that was synthesised, by one thread; 0 before the first
-    FlFluid *fluid; // while guides are made, from the first picture in which it moves paint
-    GArray *fluid_past; // int: pictures of the guides into which it has yet to move; RESTS
+    FlFluid *fluid; // while guides are made; NULL: the region has none
     FlGuideSequence *sequence;
     FlDigest sequence_of; // digest of all inputs of the sequence
     FlGuides guides;      // of the picture, for the engine; empty: it was not painted
@@ -117,7 +116,8 @@ FlRect fl_painter_guided(const FlPainter *painter);
  */
 FlGuideSource fl_painter_guide_source(FlPainter *painter);
 
-/** Frees the region's fluid, which moves while guides are made. */
+/** Opens the region's fluid, which moves while guides are made; regions without one need none. */
+bool fl_painter_open_fluid(FlPainter *painter, GError **error);
 void fl_painter_close_fluid(FlPainter *painter);
 
 /** Returns: true if the painter's picture has the guides of picture `last`, which its result still

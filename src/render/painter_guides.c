@@ -123,82 +123,27 @@ static FlOutline *outline_of(FlPainter *painter, int frame, FlOutline *known, Fl
                : fl_outline_new(mask, rect.width, rect.height, error);
 }
 
-/* ---- the fluid ------------------------------------------------------------------------------ */
-
-enum { RESTS = -1 }; // in painter->fluid_past, of a picture that is as the one before
-
-static bool has_fluid(const FlPainter *painter)
-{
-    return painter->plan->settings.fluid > FL_FLUID_NONE && !painter->shapes->flow;
-}
-
-/* Moves the fluid over a step, by each frame of the film. */
-static bool move_fluid(FlPainter *painter, const FlRegionStep *step, GError **error)
+/* The motion of the region's fluid over a step, to be freed; it moves by each frame of the film. */
+static float *fluid_motion(FlPainter *painter, const FlRegionStep *step, GError **error)
 {
     const int n = painter->shapes->n_frames;
+    g_autofree float *motion = fl_alloc_scratch(2 * fl_rect_pixels(fl_painter_guided(painter)),
+                                                sizeof *motion, "a fluid", error);
     g_autoptr(FlOutline) last =
-        outline_of(painter, step->before, step->outlines.before, NULL, error);
+        motion ? outline_of(painter, step->before, step->outlines.before, NULL, error) : NULL;
     if (!last)
-        return false;
+        return NULL;
     fl_fluid_begin(painter->fluid);
     for (int frame = step->before; frame != step->now;) {
         frame = (frame + 1) % n;
         FlOutline *known = frame == step->now ? step->outlines.now : NULL;
         g_autoptr(FlOutline) before = last;
         if (!(last = outline_of(painter, frame, known, before, error)))
-            return false;
+            return NULL;
         fl_fluid_step(painter->fluid, before, last);
     }
-    return true;
-}
-
-/* Makes the fluid, which catches up with the guides. */
-static bool open_fluid(FlPainter *painter, GError **error)
-{
-    const FlRect page = guided_part(painter->plan->style, fl_painter_page(painter));
-    const FlFluidDials dials = fl_fluid_dials(&painter->plan->settings);
-    const guint n = painter->fluid_past ? painter->fluid_past->len : 0;
-    bool good = (painter->fluid = fl_fluid_new(fl_painter_guided(painter), page, &dials, error));
-    for (guint k = 0; k < n && good; k++) {
-        const int picture = g_array_index(painter->fluid_past, int, k);
-        if (picture == RESTS) {
-            fl_fluid_step(painter->fluid, NULL, NULL);
-            continue;
-        }
-        const FlRegionStep step = step_into(painter, picture, &(FlOutlinePair){NULL, NULL});
-        good = move_fluid(painter, &step, error);
-    }
-    return good;
-}
-
-/* Puts off a move of the fluid to when it is needed, which in most films is never. */
-static void put_off(FlPainter *painter, int picture)
-{
-    if (!painter->fluid_past)
-        painter->fluid_past = g_array_new(FALSE, FALSE, sizeof picture);
-    g_array_append_val(painter->fluid_past, picture);
-}
-
-void fl_painter_close_fluid(FlPainter *painter)
-{
-    g_clear_pointer(&painter->fluid, fl_fluid_free);
-    g_clear_pointer(&painter->fluid_past, g_array_unref);
-}
-
-/* The motion into a picture that has_past(), in which the fluid has a part. */
-static bool fluid_motion(FlPainter *painter, FlRegionStep *step, float *motion, GError **error)
-{
-    const size_t values = 2 * fl_rect_pixels(fl_painter_guided(painter));
-    g_autofree float *fluid = fl_alloc_scratch(values, sizeof *fluid, "a fluid", error);
-    if (!fluid || (!painter->fluid && !open_fluid(painter, error)) ||
-        !move_fluid(painter, step, error))
-        return false;
-    fl_fluid_motion(painter->fluid, fluid);
-    step->fluid = fluid, step->wetness = (float)painter->plan->settings.wetness;
-    if (painter->motion)
-        return fl_motion_source_get(painter->motion, step, motion, NULL, error);
-    memcpy(motion, fluid, values * sizeof *motion);
-    return true;
+    fl_fluid_motion(painter->fluid, motion);
+    return g_steal_pointer(&motion);
 }
 
 /* The motion into a picture that has_past(): the drawing's own, and the fluid's. */
@@ -207,31 +152,47 @@ static bool known_motion(void *data, int frame, const FlOutlinePair *outlines, f
 {
     FlPainter *painter = data;
     FlRegionStep step = step_into(painter, frame, outlines);
-    if (painter->fluid || !painter->motion)
-        return fluid_motion(painter, &step, motion, error);
-    FlMotionShares shares;
-    if (!fl_motion_source_get(painter->motion, &step, motion, &shares, error))
+    g_autofree float *fluid = NULL;
+    if (painter->fluid && !(fluid = fluid_motion(painter, &step, error)))
         return false;
-    if (has_fluid(painter) && shares.loose > 0)
-        return fluid_motion(painter, &step, motion, error);
-    if (has_fluid(painter))
-        put_off(painter, frame);
+    step.fluid = fluid, step.wetness = (float)painter->plan->settings.wetness;
+    if (painter->motion)
+        return fl_motion_source_get(painter->motion, &step, motion, NULL, error);
+    if (fluid)
+        memcpy(motion, fluid, 2 * fl_rect_pixels(fl_painter_guided(painter)) * sizeof *motion);
     return true;
 }
 
 static FlUniformMotion known_uniform(void *data, int frame, const FlOutlinePair *outlines)
 {
-    FlPainter *painter = data;
+    const FlPainter *painter = data;
     const FlRegionStep step = step_into(painter, frame, outlines);
     if (!has_past(painter, frame))
         return FL_UNIFORM_UNKNOWN;
     if (!painter->motion || !fl_motion_source_rests(painter->motion, &step))
         return FL_UNIFORM_NOT;
     if (painter->fluid)
-        fl_fluid_step(painter->fluid, NULL, NULL);
-    else if (has_fluid(painter))
-        put_off(painter, RESTS);
+        fl_fluid_step(painter->fluid, outlines->now, outlines->now);
     return FL_UNIFORM_REST;
+}
+
+static bool has_fluid(const FlPainter *painter)
+{
+    return painter->plan->settings.fluid > FL_FLUID_NONE && !painter->shapes->flow;
+}
+
+bool fl_painter_open_fluid(FlPainter *painter, GError **error)
+{
+    const FlRect page = guided_part(painter->plan->style, fl_painter_page(painter));
+    const FlFluidDials dials = fl_fluid_dials(&painter->plan->settings);
+    fl_painter_close_fluid(painter);
+    return !has_fluid(painter) ||
+           (painter->fluid = fl_fluid_new(fl_painter_guided(painter), page, &dials, error));
+}
+
+void fl_painter_close_fluid(FlPainter *painter)
+{
+    g_clear_pointer(&painter->fluid, fl_fluid_free);
 }
 
 FlGuideSource fl_painter_guide_source(FlPainter *painter)

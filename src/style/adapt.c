@@ -170,6 +170,7 @@ static FlStyle *new_like(const FlStyle *style)
                      .cut_out = style->cut_out,
                      .medium = style->medium,
                      .marks = style->marks,
+                     .fluid = style->fluid,
                      .granulation = style->granulation,
                      .front = style->front,
                      .wash = style->wash,
