@@ -30,6 +30,13 @@ skip() {
     echo "ok $n - $1 # SKIP $2"
 }
 
+# Files beside README are those that tools and newcomers look for there.
+top_level() {
+    git ls-files | grep -v / |
+        grep -vxE 'README.md|HACKING.md|NEWS|LICENSE|meson.build|meson_options.txt|\.clang-(format|tidy)|\.editorconfig|\.gitignore'
+}
+report 'no file lies beside README by mistake' top_level
+
 # The folders of src, in the order of the data.
 folders=$(sed -n "s/^subdir('\(.*\)').*/\1/p" src/meson.build)
 
