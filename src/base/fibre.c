@@ -1,12 +1,8 @@
 #include "base/fibre.h"
 
+#include "base/curves.h"
 #include <math.h>
 #include <stddef.h>
-
-static float clamp(float x, float low, float high)
-{
-    return x < low ? low : x > high ? high : x;
-}
 
 /* One fibre: a line that turns a little all the way, as wide as a px. Turned without sin and cos,
    whose last bit differs between C libraries. */
@@ -25,7 +21,7 @@ void fl_fibre_draw(float *grid, int width, int height, float x, float y, const F
         const float norm = 1 / sqrtf(dx * dx + dy * dy + 1e-12f);
         dx *= norm, dy *= norm;
         x += dx, y += dy;
-        turn = clamp(turn + (fl_rng_float(rng) - 0.5f) * 0.03f * curl, -0.08f, 0.08f);
+        turn = fl_clamp(turn + (fl_rng_float(rng) - 0.5f) * 0.03f * curl, -0.08f, 0.08f);
         const float turned = dx - turn * dy;
         dy += turn * dx, dx = turned;
         for (int j = (int)y - reach; j <= (int)y + reach; j++)

@@ -1,6 +1,7 @@
 #include "compose/dry_marks.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "base/noise.h"
 #include "base/rng.h"
 #include "base/schedule.h"
@@ -42,23 +43,6 @@ typedef struct Hand {
     const float *depth; // of `around`, px of the frame
     FlRect around;
 } Hand;
-
-static float clamp(float x, float low, float high)
-{
-    return x < low ? low : x > high ? high : x;
-}
-
-static float smooth(float x)
-{
-    const float t = clamp(x, 0, 1);
-    return t * t * (3 - 2 * t);
-}
-
-/* Nearly e^-x, for x >= 0. */
-static float fall(float x)
-{
-    return 1 / (1 + x * (1 + x * (.5f + x * .16f)));
-}
 
 /* Places in a row of pixels, and what noise says there. */
 typedef float Row[FL_NOISE_ROW];
@@ -114,8 +98,8 @@ static float amount_at(const Hand *hand, float stick, float line, float edge, fl
     const float soft = 1.5f * NOISE_DEV * stick, lines = .26f * tool->line * NOISE_DEV * line;
     const float press = .42f + .35f * hand->small + .45f * edge +
                         .38f * tool->stick * .95f * soft / sqrtf(1 + soft * soft);
-    const float cover = smooth((press + lines + .5f * tool->tooth * height + .30f) / 1.15f);
-    const float rubbed = .88f * smooth((press + .30f) / 1.15f) + .05f * height * press;
+    const float cover = fl_smooth((press + lines + .5f * tool->tooth * height + .30f) / 1.15f);
+    const float rubbed = .88f * fl_smooth((press + .30f) / 1.15f) + .05f * height * press;
     return ((1 - smear) * cover * (1 + .22f * NOISE_DEV * line) + smear * rubbed) * tool->dark;
 }
 
@@ -142,15 +126,15 @@ static void lay_pixels(const Hand *hand, int x, int y, int n, const float *depth
         if (amounts[i] < 0)
             continue;
         const float deep = depth[i] / marking->paper_px;
-        const float height = clamp(height_at(marking, x + i, y), -2.4f, 2.4f);
-        const float pressed = fall(MAX(deep - 1, 0) / 5) * clamp(.4f + .9f * edge[i], 0, 1);
-        const float rubbed = clamp(tool->smear + .75f * smear[i] + .25f * rub[i], 0, .9f);
-        const float rim = smooth((deep + 1.2f * height + .6f) / 2.2f);
+        const float height = fl_clamp(height_at(marking, x + i, y), -2.4f, 2.4f);
+        const float pressed = fl_decay(MAX(deep - 1, 0) / 5) * fl_clamp(.4f + .9f * edge[i], 0, 1);
+        const float rubbed = fl_clamp(tool->smear + .75f * smear[i] + .25f * rub[i], 0, .9f);
+        const float rim = fl_smooth((deep + 1.2f * height + .6f) / 2.2f);
         const float laid =
             rim * amount_at(hand, stick[i], line[i], pressed, rubbed, height) * FL_AMOUNT_ONE;
-        const float own = tool->rim_px > 0 ? smooth(deep / tool->rim_px) : 1;
+        const float own = tool->rim_px > 0 ? fl_smooth(deep / tool->rim_px) : 1;
         const float mixed = (float)amounts[i] + own * (laid - (float)amounts[i]);
-        amounts[i] = (int16_t)clamp(mixed, 0, FL_AMOUNTS - 1);
+        amounts[i] = (int16_t)fl_clamp(mixed, 0, FL_AMOUNTS - 1);
     }
 }
 
@@ -187,8 +171,8 @@ bool fl_marks_lay(const FlMarking *marking, const FlArea *area, FlRect page,
     g_autofree float *depth = find_depth(around, box, coverage, error);
     const Hand hand = {.marking = marking,
                        .tool = &tools[marking->marks],
-                       .small = clamp((34 - size) / 26, 0, 1),
-                       .length = clamp(size / 70, .45f, 1),
+                       .small = fl_clamp((34 - size) / 26, 0, 1),
+                       .length = fl_clamp(size / 70, .45f, 1),
                        .along = {cosf(angle), sinf(angle)},
                        .depth = depth,
                        .around = around};

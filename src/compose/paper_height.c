@@ -1,5 +1,6 @@
 #include "compose/paper_height.h"
 
+#include "base/curves.h"
 #include "base/fibre.h"
 #include "base/noise.h"
 #include <glib.h>
@@ -61,11 +62,6 @@ const FlPaperGrain *fl_paper_grain(FlPaperKind kind)
     return &grains[kind];
 }
 
-static float clamp(float x, float low, float high)
-{
-    return x < low ? low : x > high ? high : x;
-}
-
 /* ---- laid lines ------------------------------------------------------------------------------ */
 
 #define CHAIN_PX 104 // between the wires across the lines
@@ -78,7 +74,7 @@ static float line_at(const FlPaperPlace *place, float x, float y)
     const float turn = y / place->grain->line + .45f * bend;
     const float wave = 4 * fabsf(turn - floorf(turn) - .5f) - 1;
     const float strength = fl_noise(fl_key(seed, KEY_BREAKS), x / 22, y / 8);
-    return wave * clamp(.55f + 1.1f * strength, 0, 1.7f);
+    return wave * fl_clamp(.55f + 1.1f * strength, 0, 1.7f);
 }
 
 static float chain_at(const FlPaperPlace *place, float x, float y)
@@ -247,5 +243,5 @@ float fl_paper_fleck(const FlPaperPlace *place, float x, float y)
 {
     const float px = 1 / place->scale;
     const float n = fl_noise(fl_key(place->seed, KEY_FLECKS), x * px / 3.1f, y * px / 2.4f);
-    return clamp((n - .95f) * 4, 0, 1);
+    return fl_clamp((n - .95f) * 4, 0, 1);
 }

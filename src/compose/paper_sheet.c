@@ -1,6 +1,7 @@
 #include "compose/paper_sheet.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "base/page.h"
 #include "base/parallel_error.h"
 #include "base/picture.h"
@@ -20,11 +21,6 @@
 #define MOST_FINER 4    // times: as far as small pages are made larger, and
 #define MOST_PIXELS 2e7 // as large as that may be
 #define BAND_ROWS 32    // of a sheet that is put away are read at a time
-
-static float clamp(float x, float low, float high)
-{
-    return x < low ? low : x > high ? high : x;
-}
 
 /* ---- making ---------------------------------------------------------------------------------- */
 
@@ -109,7 +105,7 @@ static float light_at(const Surface *surface, const float *height)
 
 static uint16_t factor_of(float share)
 {
-    return (uint16_t)(clamp(1 + share, 0, 1.99f) * FL_PAPER_ONE + .5f);
+    return (uint16_t)(fl_clamp(1 + share, 0, 1.99f) * FL_PAPER_ONE + .5f);
 }
 
 static void fill_pixel(const Surface *surface, int x, int y, uint16_t factor[4], int8_t *tooth)
@@ -129,7 +125,7 @@ static void fill_pixel(const Surface *surface, int x, int y, uint16_t factor[4],
     factor[1] = factor_of(surface->relief * (share - .3f * grain->warm * warm));
     factor[2] = factor_of(surface->relief * (share - 1.6f * grain->warm * warm));
     factor[3] = FL_PAPER_ONE;
-    *tooth = (int8_t)lrintf(clamp(fine, -TOOTH_END, TOOTH_END) * FL_TOOTH_ONE);
+    *tooth = (int8_t)lrintf(fl_clamp(fine, -TOOTH_END, TOOTH_END) * FL_TOOTH_ONE);
 }
 
 static bool make_kind(FlPaperSheet *sheet, const FlPaperPlace *place, float relief, GError **error)

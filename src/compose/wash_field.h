@@ -2,6 +2,7 @@
 #ifndef FLUIDY_COMPOSE_WASH_FIELD_H
 #define FLUIDY_COMPOSE_WASH_FIELD_H
 
+#include "base/curves.h"
 #include "compose/wash.h"
 
 /** A region, and what moves as one in it: all of it, or a limb. */
@@ -33,17 +34,6 @@ typedef struct FlWashField {
 static inline size_t fl_wash_points(const FlWash *wash)
 {
     return (size_t)wash->width * (size_t)wash->height;
-}
-
-static inline float fl_clamp(float x, float low, float high)
-{
-    return x < low ? low : x > high ? high : x;
-}
-
-static inline float fl_smooth(float x)
-{
-    const float t = fl_clamp(x, 0, 1);
-    return t * t * (3 - 2 * t);
 }
 
 #define FL_WASH_NEAR 4 // points beyond a shape at which its wash is known

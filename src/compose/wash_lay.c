@@ -1,3 +1,4 @@
+#include "base/curves.h"
 #include "base/density.h"
 #include "base/rng.h"
 #include "base/schedule.h"
@@ -32,23 +33,6 @@ static void brush_init(Brush *brush, const FlWash *wash, float white)
     }
 }
 
-static inline float clamp(float x, float low, float high)
-{
-    return x < low ? low : x > high ? high : x;
-}
-
-static inline float smooth(float x)
-{
-    const float t = clamp(x, 0, 1);
-    return t * t * (3 - 2 * t);
-}
-
-/* Nearly e^-x, for x >= 0. */
-static inline float fall(float x)
-{
-    return 1 / (1 + x * (1 + x * (.5f + x * .16f)));
-}
-
 /* The values of the slow fields at a pixel. */
 typedef float Slow[FL_WASH_PLANES];
 
@@ -56,7 +40,7 @@ typedef float Slow[FL_WASH_PLANES];
 static inline float tide_at(const Slow slow)
 {
     const float away = slow[FL_WASH_TIDE];
-    return slow[FL_WASH_TIDES] * (away < 0 ? fall(-away * .45f) : fall(away * .045f));
+    return slow[FL_WASH_TIDES] * (away < 0 ? fl_decay(-away * .45f) : fl_decay(away * .045f));
 }
 
 /* Light inside, with a dark rim that is sharp outside. */
@@ -65,8 +49,8 @@ static inline float bloom_at(const Slow slow)
     const float away = slow[FL_WASH_BLOOM], found = slow[FL_WASH_BLOOMS];
     if (away > 12 || found <= 0)
         return 0;
-    return away > 0 ? .30f * found * fall(.5f * away)
-                    : found * (.30f * fall(-away / 6) - .45f * smooth(-away / 30));
+    return away > 0 ? .30f * found * fl_decay(.5f * away)
+                    : found * (.30f * fl_decay(-away / 6) - .45f * fl_smooth(-away / 30));
 }
 
 /* The ln of the factor on the amount, and the balance of the pigments, at a pixel. Lines meet and
@@ -77,23 +61,23 @@ static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
     const float pass = floorf(slow[FL_WASH_PASS]), part = slow[FL_WASH_PASS] - pass;
     const int k = (int)pass & (LOADS - 1);
     const float crisp = slow[FL_WASH_CRISP], width = .5f - .455f * crisp;
-    const float next = smooth((part - 1 + width) / width);
+    const float next = fl_smooth((part - 1 + width) / width);
     const float load = brush->load[k] + (brush->load[k + 1] - brush->load[k]) * next;
-    const float ridge = crisp * fall((1 - part) * brush->wash->brush_px / 7) * .7f;
-    const float tide = tide_at(slow), free = 1 - smooth(2.2f * tide);
+    const float ridge = crisp * fl_decay((1 - part) * brush->wash->brush_px / 7) * .7f;
+    const float tide = tide_at(slow), free = 1 - fl_smooth(2.2f * tide);
     *hue = slow[FL_WASH_HUE] + slow[FL_WASH_LINES] * .25f * load + .3f * tide;
     return style->wash *
            (slow[FL_WASH_TONE] +
             1.4f * style->passes * slow[FL_WASH_LINES] *
                 (.10f * load * (.5f + .5f * free) + .24f * ridge * free) +
             1.2f * style->tide *
-                (.36f * tide - .14f * slow[FL_WASH_TIDES] * smooth(slow[FL_WASH_TIDE] / 34)) +
+                (.36f * tide - .14f * slow[FL_WASH_TIDES] * fl_smooth(slow[FL_WASH_TIDE] / 34)) +
             style->blooms * bloom_at(slow));
 }
 
 static int amount_of(const Brush *brush, int amount, float tone)
 {
-    const int i = (int)((clamp(tone, TONE_LEAST, 1.37f) - TONE_LEAST) * TONE_ONE);
+    const int i = (int)((fl_clamp(tone, TONE_LEAST, 1.37f) - TONE_LEAST) * TONE_ONE);
     const uint32_t laid = ((uint32_t)amount * brush->factor[i] + 64 * 255 / 2) / (64 * 255);
     const float even = .9f * FL_AMOUNT_ONE + .1f * (float)amount;
     const float mixed = (float)laid + brush->white * (even - (float)laid);
@@ -126,10 +110,10 @@ static void lay_row(const Brush *brush, const FlArea *area, int y, int16_t *amou
                 const float tone = tone_at(brush, slow, &hue);
                 const float side =
                     wash->style.wash * slow[FL_WASH_TONE]; // lines look like dirt in white
-                const float shade = smooth((3.5f * side + .15f) / 1.5f);
+                const float shade = fl_smooth((3.5f * side + .15f) / 1.5f);
                 hue += brush->white * (shade - hue);
                 amounts[x] = (int16_t)amount_of(brush, amounts[x], tone);
-                play[x] = (int8_t)(clamp(hue, -1.95f, 1.95f) * FL_PLAY_ONE);
+                play[x] = (int8_t)(fl_clamp(hue, -1.95f, 1.95f) * FL_PLAY_ONE);
             }
             for (int k = 0; k < FL_WASH_PLANES; k++)
                 slow[k] += more[k];

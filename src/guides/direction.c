@@ -1,5 +1,6 @@
 #include "guides/direction.h"
 
+#include "base/curves.h"
 #include "guides/guides.h"
 #include <math.h>
 
@@ -40,8 +41,7 @@ static float share_of_flow(float speed, float still_px)
 {
     if (speed >= 2.0f * still_px)
         return speed > 0.0f;
-    const float t = CLAMP(speed / still_px - 1.0f, 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
+    return fl_smooth(speed / still_px - 1);
 }
 
 void fl_direction(const uint8_t *coverage, const float *flow, const float *normal, size_t n,

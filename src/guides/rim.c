@@ -1,6 +1,7 @@
 #include "guides/rim.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "base/windows.h"
 #include "guides/distance.h"
 #include "guides/local_width.h"
@@ -17,17 +18,11 @@ typedef struct Rim {
     float width, amount;
 } Rim;
 
-static float smoothstep(float from, float to, float x)
-{
-    const float t = CLAMP((x - from) / (to - from), 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
-}
-
 /** Of a detail that lies over something else: u is its half width, of a border. Eyes stay round. */
 static Rim detail_rim(float u)
 {
     const float v = MIN(u / DETAIL_WIDE, 1.0f);
-    return (Rim){v * v, smoothstep(DETAIL_NO_RIM, 1.0f, v)};
+    return (Rim){v * v, fl_smooth((v - DETAIL_NO_RIM) / (1 - DETAIL_NO_RIM))};
 }
 
 /**
@@ -37,7 +32,7 @@ static Rim detail_rim(float u)
 static Rim taper_rim(float u)
 {
     const float width = CLAMP((u - NO_RIM) / (1.0f - NO_RIM), 0.0f, 1.0f);
-    return (Rim){width, smoothstep(0.0f, RIM_FULL, width)};
+    return (Rim){width, fl_smooth(width / RIM_FULL)};
 }
 
 /** others: how much of what is beyond is other shapes', 0 … 1. */

@@ -1,6 +1,7 @@
 #include "transport/carried_ink.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "base/density.h"
 #include "base/rng.h"
 #include "base/schedule.h"
@@ -101,8 +102,7 @@ static void add_velocity(const FlCarriedInk *ink, const FlMaterial *material, in
 static float taper_at(const FlCarriedInk *ink, const FlGuides *guides, size_t p)
 {
     const float depth = guides->distance[p] / (ink->input.tile->style.taper_px * ink->input.scale);
-    const float t = fminf(fmaxf(depth, 0), 1);
-    return guides->mask[p] ? t * t * (3 - 2 * t) : 0;
+    return guides->mask[p] ? fl_smooth(depth) : 0;
 }
 
 /* Adds share * (velocity of both layers, each weighted by how intact it is here). */

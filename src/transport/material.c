@@ -1,6 +1,7 @@
 #include "transport/material.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include <math.h>
 #include <string.h>
 
@@ -77,12 +78,6 @@ bool fl_material_is_inside(const FlMaterial *material, const FlGuides *guides, i
     return guides->mask[(size_t)(y + r.y) * (size_t)guides->width + (size_t)(x + r.x)] >= FL_INSIDE;
 }
 
-static float smooth_step(float t)
-{
-    t = fminf(fmaxf(t, 0), 1);
-    return t * t * (3 - 2 * t);
-}
-
 /* The largest and the smallest factor by which the pattern is squeezed; below 0: it is mirrored. */
 static void factors_of(float f[2][2], float *most, float *least)
 {
@@ -100,7 +95,7 @@ static float strain_of(float f[2][2])
     factors_of(f, &most, &least);
     if (least <= 1 / STRAINED)
         return 1;
-    return smooth_step((fmaxf(most, 1 / least) - UNSTRAINED) / (STRAINED - UNSTRAINED));
+    return fl_smooth((fmaxf(most, 1 / least) - UNSTRAINED) / (STRAINED - UNSTRAINED));
 }
 
 /* The tear between a pixel and its neighbours: the gradient's excess over theirs. */
@@ -108,7 +103,7 @@ static float tear_of(float f[2][2])
 {
     float most, least;
     factors_of(f, &most, &least);
-    return smooth_step((fmaxf(most - 1, 1 - least) - WHOLE) / (TORN - WHOLE));
+    return fl_smooth((fmaxf(most - 1, 1 - least) - WHOLE) / (TORN - WHOLE));
 }
 
 /* Less the gradient of the side that is more alike. Returns: whether a side is in the region. */
@@ -156,7 +151,7 @@ static float end_of(const FlMaterial *share, int x, int y)
 {
     float f[2][2];
     fl_material_gradient(share, x, y, f);
-    return smooth_step((hypotf(f[1][0], f[1][1] - 1) - SHARED) / (ENDED - SHARED));
+    return fl_smooth((hypotf(f[1][0], f[1][1] - 1) - SHARED) / (ENDED - SHARED));
 }
 
 static void find_tears(const FlMaterial *material, const FlMaterial *share, const FlGuides *guides,
@@ -189,7 +184,7 @@ static void spread_tear(FlRect r, int x, int y, float tear, float reach_px, floa
             const float dx = (float)(i - x), dy = (float)(j - y);
             const float away = sqrtf(dx * dx + dy * dy) / reach_px;
             float *at = whole + (size_t)j * (size_t)r.width + (size_t)i;
-            *at = fminf(*at, 1 - tear * (1 - smooth_step(away)));
+            *at = fminf(*at, 1 - tear * (1 - fl_smooth(away)));
         }
 }
 

@@ -1,4 +1,5 @@
 /* Paper from noise and fibres: relief, capacity, permeability. No scanned data, no licence. */
+#include "base/curves.h"
 #include "base/fibre.h"
 #include "base/noise.h"
 #include "base/rng.h"
@@ -7,11 +8,6 @@
 #include <math.h>
 
 enum { KEY_BUMPS = 101, KEY_TOOTH, KEY_FIBRES, KEY_PATCHES, KEY_PIN };
-
-static float clamp(float x, float low, float high)
-{
-    return x < low ? low : x > high ? high : x;
-}
 
 /* Bumps like those of felt: two sizes of noise, creased where they cross 0, and a fine tooth. */
 static float bump(uint64_t seed, const FlPaper *paper, float x, float y)
@@ -39,7 +35,7 @@ static void draw_fibres(FlSheet *sheet, const FlRecipe *recipe, float *grid)
 /* A positive factor from noise, 1 on the average in the logarithm, without exp(). */
 static float factor(float contrast, float noise)
 {
-    const float x = clamp(contrast * noise, -0.97f, 0.97f);
+    const float x = fl_clamp(contrast * noise, -0.97f, 0.97f);
     return (1 + x) / (1 - x);
 }
 
@@ -50,7 +46,7 @@ static float openness(const FlRecipe *recipe, float x, float y, float fibre)
     const float patch = fl_noise_octaves(fl_key(recipe->seed, KEY_PATCHES), x / paper->patch_px,
                                          y / paper->patch_px, 4, 0.75f);
     const float base = 1 - paper->fibre_pull * (1 - fibre);
-    return clamp(0.8f * factor(paper->patchiness, patch) * base, 0.002f, 1);
+    return fl_clamp(0.8f * factor(paper->patchiness, patch) * base, 0.002f, 1);
 }
 
 static void make_cells(FlSheet *sheet, const FlRecipe *recipe, const float *fibres, float *open)
@@ -63,14 +59,14 @@ static void make_cells(FlSheet *sheet, const FlRecipe *recipe, const float *fibr
             const size_t at = (size_t)j * sheet->width + i;
             const float x = (float)i * px, y = (float)j * px;
             const float h =
-                clamp(bump(recipe->seed, paper, x, y) + 0.2f * fibres[at], 0.02f, 0.98f);
+                fl_clamp(bump(recipe->seed, paper, x, y) + 0.2f * fibres[at], 0.02f, 0.98f);
             const float pin =
                 fl_noise_octaves(fl_key(recipe->seed, KEY_PIN), x / 3, y / 3, 2, 0.8f);
             sheet->relief[at] = h;
             sheet->capacity[at] =
                 paper->capacity[0] + h * (paper->capacity[1] - paper->capacity[0]);
             open[at] = openness(recipe, x, y, fibres[at]);
-            sheet->pin[at] = clamp(1 + paper->pinning * (2 * pin - 1.5f * fibres[at]), 0.05f, 4);
+            sheet->pin[at] = fl_clamp(1 + paper->pinning * (2 * pin - 1.5f * fibres[at]), 0.05f, 4);
         }
 }
 

@@ -1,8 +1,8 @@
 #include "wet/fibres.h"
 
+#include "base/curves.h"
 #include "base/noise.h"
 #include "base/rng.h"
-#include "wet/curves.h"
 #include <math.h>
 
 /** Of fl_noise(). */

@@ -1,8 +1,8 @@
 #include "wet/marks.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "guides/blur.h"
-#include "wet/curves.h"
 #include <math.h>
 
 #define THIN 0.65f // density of a front, as a share of that of the paint that it runs from

@@ -2,8 +2,8 @@
 #include "wet/wet_data.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "guides/guides.h"
-#include "wet/curves.h"
 #include <math.h>
 
 #define AHEAD_FRAMES 4 // a front wets paper where the figure will be so soon

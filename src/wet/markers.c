@@ -2,9 +2,9 @@
 #include "wet/wet.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "guides/distance.h"
 #include "params/text.h"
-#include "wet/curves.h"
 
 static FlRegionSettings settings_in(const FlPlan *plan, const FlRegionPlan *region, int frame)
 {

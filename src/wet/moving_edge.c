@@ -1,9 +1,9 @@
 #include "wet/moving_edge.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "base/density.h"
 #include "guides/guides.h"
-#include "wet/curves.h"
 #include "wet/fibres.h"
 #include <math.h>
 

@@ -1,7 +1,7 @@
 #include "wet/marks.h"
 
+#include "base/curves.h"
 #include "guides/guides.h"
-#include "wet/curves.h"
 #include <math.h>
 
 /** A pixel that paint may have left, in the time since the frame before. */

@@ -1,10 +1,10 @@
 #include "wet/wet.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "base/rng.h"
 #include "base/schedule.h"
 #include "guides/guides.h"
-#include "wet/curves.h"
 #include "wet/wet_data.h"
 #include <math.h>
 

@@ -1,7 +1,7 @@
 #include "wet/wet_sheet.h"
 
 #include "base/alloc.h"
-#include "wet/curves.h"
+#include "base/curves.h"
 #include <math.h>
 
 #define FRONT_FRAMES 2.2f // in which a front dries

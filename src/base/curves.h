@@ -1,17 +1,33 @@
-/* The curves of wet paper, from sums, products and quotients alone: the same bits on every
- * processor. */
-#ifndef FLUIDY_WET_CURVES_H
-#define FLUIDY_WET_CURVES_H
+/* Curves from sums, products and quotients alone: the same bits on every processor. */
+#ifndef FLUIDY_BASE_CURVES_H
+#define FLUIDY_BASE_CURVES_H
 
 #include <glib.h>
 #include <stdint.h>
 #include <string.h>
 
+static inline float fl_clamp(float x, float low, float high)
+{
+    return x > low ? (x < high ? x : high) : low;
+}
+
+/** A smooth step from 0 to 1. */
+static inline float fl_smooth(float x)
+{
+    const float t = fl_clamp(x, 0, 1);
+    return t * t * (3 - 2 * t);
+}
+
 /** A smooth step: 0 up to `from`, 1 from `to` on. */
 static inline float fl_ease(float from, float to, float x)
 {
-    const float t = CLAMP((x - from) / (to - from + 1e-6f), 0.0f, 1.0f);
-    return t * t * (3 - 2 * t);
+    return fl_smooth((x - from) / (to - from + 1e-6f));
+}
+
+/** Nearly exp(-x) for x >= 0, and faster than fl_fall(): in the end it falls as 1 / x³. */
+static inline float fl_decay(float x)
+{
+    return 1 / (1 + x * (1 + x * (.5f + x * .16f)));
 }
 
 /** exp(-x) to 1e-4 of its value for x >= 0; below 1e-9 it stays so. */
