@@ -53,7 +53,7 @@ void fl_survey_frame_clear(FlSurveyFrame *frame);
 
 /** A leaf as it is measured on a page of its own. */
 typedef struct FlShape {
-    uint32_t paint; // hash of its keys
+    uint64_t paint; // hash of its keys; as wide as the rest, so that no byte of a shape is unset
     double x, y, width, height;
 } FlShape;
 

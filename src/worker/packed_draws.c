@@ -7,9 +7,13 @@
 
 enum { ROWS, COVERAGE, BY_HAND, PICTURE, N_PLANES };
 
-/* A draw without what its pointers point to. The planes that it has follow, compressed as one. */
+/* The fields of a draw that hold no pointer, without padding. The planes follow, compressed as one.
+ */
 typedef struct Header {
-    FlDraw draw;
+    FlRect box;
+    int region;
+    FlBlendMode blend_mode;
+    uint8_t rgb[3], alpha;
     unsigned planes; // bits
     size_t bytes;
 } Header;
@@ -31,16 +35,14 @@ static unsigned planes_of(const FlDraw *draw)
            (draw->by_hand ? 1U << BY_HAND : 0) | (draw->picture ? 1U << PICTURE : 0);
 }
 
-static FlDraw without_planes(FlDraw draw)
-{
-    draw.area.row = NULL;
-    draw.coverage = draw.by_hand = draw.picture = NULL;
-    return draw;
-}
-
 static bool pack(const FlDraw *draw, GByteArray *to, GError **error)
 {
-    Header header = {without_planes(*draw), planes_of(draw), 0};
+    Header header = {.box = draw->area.box,
+                     .region = draw->region,
+                     .blend_mode = draw->blend_mode,
+                     .rgb = {draw->rgb[0], draw->rgb[1], draw->rgb[2]},
+                     .alpha = draw->alpha,
+                     .planes = planes_of(draw)};
     FlSpan parts[N_PLANES];
     for (int k = 0; k < N_PLANES; k++)
         parts[k] = part_of(draw, header.planes, k);
@@ -67,9 +69,9 @@ GBytes *fl_draws_pack(const FlDrawList *draws, GError **error)
     return g_byte_array_free_to_bytes(g_steal_pointer(&packed));
 }
 
-static bool is_of(const FlDraw *draw, const FlDrawBounds *bounds)
+static bool is_of(const Header *draw, const FlDrawBounds *bounds)
 {
-    const FlRect box = draw->area.box;
+    const FlRect box = draw->box;
     return box.x >= 0 && box.y >= 0 && box.width >= 0 && box.height >= 0 &&
            box.width <= bounds->width - box.x && box.height <= bounds->height - box.y &&
            draw->region >= 0 && draw->region < bounds->n_regions &&
@@ -103,10 +105,14 @@ static bool unpack(FlReader *reader, const FlDrawBounds *bounds, FlDraw *draw, G
     Header header;
     FlSpan parts[N_PLANES];
     fl_reader_copy(reader, &header, sizeof header);
-    if (!fl_take_check(reader, header.bytes <= reader->left && is_of(&header.draw, bounds) &&
+    if (!fl_take_check(reader, header.bytes <= reader->left && is_of(&header, bounds) &&
                                    header.planes >> N_PLANES == 0 && header.planes >> COVERAGE & 1))
         return false;
-    *draw = without_planes(header.draw);
+    *draw = (FlDraw){.region = header.region,
+                     .area = {.box = header.box},
+                     .rgb = {header.rgb[0], header.rgb[1], header.rgb[2]},
+                     .alpha = header.alpha,
+                     .blend_mode = header.blend_mode};
     size_t unpacked = 0;
     for (int k = 0; k < N_PLANES; k++)
         unpacked += part_of(draw, header.planes, k).bytes;

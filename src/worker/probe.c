@@ -275,29 +275,31 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **
     const FlPose pose = n > 0 ? pose_of(f, leaf, index) : (FlPose){0};
     for (int i = 0; i < n; i++) {
         const FlPainted *p = &parts[i];
-        FlProbe probe = {.leaf = leaf, .paint = p->paint.key};
-        probe.found = (FlSurveyPart){.leaf = index,
-                                     .part = p->part,
-                                     .stroke = p->stroke,
-                                     .width = width_of(f, leaf, p),
-                                     .thick = p->stroke && p->width >= THICK,
-                                     .kind = p->paint.kind,
-                                     .alpha = p->paint.alpha,
-                                     .peak = p->paint.peak,
-                                     .blend_mode = p->blend_mode,
-                                     .pose = pose,
-                                     .unit = index < 0 ? -index : 0,
-                                     .region = -1};
-        memcpy(probe.found.rgb, p->paint.rgb, 3);
+        FlProbe probe;
+        memset(&probe, 0, sizeof probe); // clears the padding, since parts are sent as bytes
+        probe.leaf = leaf, probe.paint = p->paint.key;
+        FlSurveyPart *found = &probe.found;
+        found->leaf = index;
+        found->part = p->part;
+        found->stroke = p->stroke;
+        found->width = width_of(f, leaf, p);
+        found->thick = p->stroke && p->width >= THICK;
+        found->kind = p->paint.kind;
+        memcpy(found->rgb, p->paint.rgb, 3);
+        found->alpha = p->paint.alpha;
+        found->peak = p->paint.peak;
+        found->blend_mode = p->blend_mode;
+        found->pose = pose;
+        found->unit = index < 0 ? -index : 0;
+        found->region = -1;
         good = good && cover(f, leaf, p->part, f->all, &probe.box, error);
         const float opacity = MAX(p->paint.peak, 1) / 255.0f;
-        probe.found.area_px =
-            (float)(sum_of(f->coverage, probe.box) / opacity * f->factor * f->factor);
+        found->area_px = (float)(sum_of(f->coverage, probe.box) / opacity * f->factor * f->factor);
         keep_cover(f, &probe);
         fl_surface_wipe(f->coverage, probe.box);
         if (good && (leaf->text || (probe.box.width == 0 && is_tiny(f, leaf)))) {
-            good = box_in_full(f, leaf, p->part, &probe.box, &probe.found.area_px, error);
-            probe.found.area_px /= opacity;
+            good = box_in_full(f, leaf, p->part, &probe.box, &found->area_px, error);
+            found->area_px /= opacity;
         }
         if (p->width > 0)
             widen(f, leaf, &probe.box);

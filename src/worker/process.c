@@ -43,7 +43,7 @@ uint8_t *fl_memory_file_get(int file, size_t *bytes)
 /** The orders with which a worker starts. */
 typedef struct Orders {
     int64_t limit[FL_N_LIMITS];
-    bool confined, required;
+    int confined, required; // of 4 bytes each, so that no byte of the orders is unset
 } Orders;
 
 void fl_process_pack_orders(GByteArray *out, bool confined, bool required, const char *const *paths)

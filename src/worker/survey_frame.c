@@ -129,19 +129,19 @@ static void keep(const FlFrameProbe *f, FlStrings *s, FlSurveyFrame *frame)
     GArray *parts = g_array_sized_new(FALSE, FALSE, sizeof(FlSurveyPart), f->probes->len);
     for (guint i = 0; i < f->probes->len; i++) {
         const FlProbe *probe = &g_array_index(f->probes, FlProbe, i);
-        FlSurveyPart one = probe->found;
-        one.paint = fl_strings_add(s, probe->paint);
-        one.name = fl_strings_add(s, probe->leaf->name);
-        one.labels = fl_strings_add(s, probe->leaf->labels);
-        one.layers = fl_strings_add(s, probe->leaf->layers);
-        one.ids = fl_strings_add(s, probe->leaf->ids);
-        one.classes = fl_strings_add(s, probe->leaf->classes);
-        one.tree = fl_strings_add(s, probe->leaf->tree);
+        g_array_append_val(parts, probe->found);
+        FlSurveyPart *one = &g_array_index(parts, FlSurveyPart, i);
+        one->paint = fl_strings_add(s, probe->paint);
+        one->name = fl_strings_add(s, probe->leaf->name);
+        one->labels = fl_strings_add(s, probe->leaf->labels);
+        one->layers = fl_strings_add(s, probe->leaf->layers);
+        one->ids = fl_strings_add(s, probe->leaf->ids);
+        one->classes = fl_strings_add(s, probe->leaf->classes);
+        one->tree = fl_strings_add(s, probe->leaf->tree);
         const FlRect box = probe->box;
         const int corner[4] = {box.x - 1, box.y - 1, box.x + box.width + 1, box.y + box.height + 1};
         for (int c = 0; c < 4; c++)
-            one.box[c] = (float)(corner[c] * f->factor);
-        g_array_append_val(parts, one);
+            one->box[c] = (float)(corner[c] * f->factor);
     }
     frame->parts = parts;
 }
