@@ -1,11 +1,37 @@
-#include <fluidy/error.h>
+#include "base/error.h"
 
-#include <stdbool.h>
 #include <string.h>
 
 GQuark fl_error_quark(void)
 {
     return g_quark_from_static_string("fl-error-quark");
+}
+
+bool fl_fail(GError **error, FlError code, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    g_autofree char *message = g_strdup_vprintf(format, arguments);
+    va_end(arguments);
+    g_set_error_literal(error, FL_ERROR, code, message);
+    return false;
+}
+
+void fl_parallel_error_keep(GError **first, GError *failure)
+{
+    static GMutex mutex;
+    g_mutex_lock(&mutex);
+    if (!*first)
+        *first = g_steal_pointer(&failure);
+    g_mutex_unlock(&mutex);
+    g_clear_error(&failure);
+}
+
+bool fl_parallel_error_propagate(GError **error, GError *first)
+{
+    if (first)
+        g_propagate_error(error, first);
+    return first == NULL;
 }
 
 /** Returns: true if a character controls a terminal or the direction of the text around. */

@@ -1,6 +1,6 @@
 #include "base/schedule.h"
 
-#include "base/parallel_error.h"
+#include "base/error.h"
 #include <stdlib.h>
 #ifdef _OPENMP
 #include <omp.h>

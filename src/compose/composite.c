@@ -1,7 +1,7 @@
 #include "compose/composite.h"
 
 #include "base/alloc.h"
-#include "base/parallel_error.h"
+#include "base/error.h"
 #include "base/schedule.h"
 #include "compose/exposure.h"
 #include "compose/paint_layer.h"

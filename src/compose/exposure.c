@@ -1,7 +1,7 @@
 #include "compose/exposure.h"
 
 #include "base/alloc.h"
-#include "base/parallel_error.h"
+#include "base/error.h"
 #include <string.h>
 
 /**

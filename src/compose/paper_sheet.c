@@ -2,8 +2,8 @@
 
 #include "base/alloc.h"
 #include "base/curves.h"
+#include "base/error.h"
 #include "base/page.h"
-#include "base/parallel_error.h"
 #include "base/picture.h"
 #include "base/rng.h"
 #include "base/row_kernels.h"

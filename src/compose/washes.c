@@ -1,4 +1,4 @@
-#include "base/parallel_error.h"
+#include "base/error.h"
 #include "base/rng.h"
 #include "compose/wash_field.h"
 

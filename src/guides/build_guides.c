@@ -13,7 +13,7 @@
  */
 #include "guides/build_guides.h"
 #include "base/alloc.h"
-#include "base/parallel_error.h"
+#include "base/error.h"
 #include "guides/blur.h"
 #include "guides/change_map.h"
 #include "guides/direction.h"

@@ -1,5 +1,5 @@
 #include "base/alloc.h"
-#include "base/parallel_error.h"
+#include "base/error.h"
 #include "guides/build_guides.h"
 #include "guides/change_map.h"
 #include "guides/displacement.h"

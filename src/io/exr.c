@@ -1,8 +1,8 @@
 /* Layered OpenEXR files, half float. */
 #include "base/alloc.h"
 #include "base/density.h"
+#include "base/error.h"
 #include "base/file.h"
-#include "base/parallel_error.h"
 #include "base/schedule.h"
 #include "io/atomic_file.h"
 #include "io/formats.h"

@@ -1,6 +1,6 @@
 #include "job/plan.h"
 
-#include "base/parallel_error.h"
+#include "base/error.h"
 #include "cover/cover_map.h"
 #include <stdatomic.h>
 

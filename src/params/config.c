@@ -1,5 +1,6 @@
 #include "params/config.h"
 
+#include "base/error.h"
 #include "base/suggest.h"
 #include "params/key_file.h"
 #include "params/options.h"
@@ -28,18 +29,6 @@ static void reader_clear(Reader *reader)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Reader, reader_clear)
 
-static bool usage(GError **error, const char *format, ...) G_GNUC_PRINTF(2, 3);
-
-static bool usage(GError **error, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    g_autofree char *message = g_strdup_vprintf(format, args);
-    va_end(args);
-    g_set_error_literal(error, FL_ERROR, FL_ERROR_USAGE, message);
-    return false;
-}
-
 static const struct MatchKey {
     const char *key;
     size_t offset;
@@ -63,10 +52,11 @@ static bool start_region(Reader *reader, const char *name, int line, GError **er
 {
     FlConfig *config = reader->config;
     if (!*name)
-        return usage(error, "a region section needs a name: [region NAME]");
+        return fl_fail(error, FL_ERROR_USAGE, "a region section needs a name: [region NAME]");
     const int before = GPOINTER_TO_INT(g_hash_table_lookup(reader->sections, name));
     if (before)
-        return usage(error, "[region %s] occurs twice, first in line %d", name, before);
+        return fl_fail(error, FL_ERROR_USAGE, "[region %s] occurs twice, first in line %d", name,
+                       before);
     g_hash_table_insert(reader->sections, g_strdup(name), GINT_TO_POINTER(line));
     config->rules = g_renew(FlRule, config->rules, config->n_rules + 1);
     config->rules[config->n_rules++] = (FlRule){
@@ -88,14 +78,14 @@ static bool read_section(void *data, const char *name, int line, GError **error)
         if (strcmp(name, words[place]) != 0)
             continue;
         if (reader->present[place])
-            return usage(error, "[%s] occurs twice", name);
+            return fl_fail(error, FL_ERROR_USAGE, "[%s] occurs twice", name);
         reader->present[place] = true;
         reader->place = place;
         return true;
     }
     g_autofree char *hint = fl_did_you_mean(name, words + 1);
-    return usage(error, "unknown section [%s]%s%s", name,
-                 *hint ? "" : "; sections are [project], [defaults] and [region NAME]", hint);
+    return fl_fail(error, FL_ERROR_USAGE, "unknown section [%s]%s%s", name,
+                   *hint ? "" : "; sections are [project], [defaults] and [region NAME]", hint);
 }
 
 /* ---- [project] --------------------------------------------------------------------------- */
@@ -103,7 +93,8 @@ static bool read_section(void *data, const char *name, int line, GError **error)
 static bool set_version(Reader *reader, const char *value, GError **error)
 {
     return strcmp(value, "1") == 0 ||
-           usage(error, "version: “%s” is not 1, the only version there is", value);
+           fl_fail(error, FL_ERROR_USAGE, "version: “%s” is not 1, the only version there is",
+                   value);
 }
 
 static bool set_project(Reader *reader, const char *key, const char *value, GError **error)
@@ -125,7 +116,7 @@ static bool set_project(Reader *reader, const char *key, const char *value, GErr
             g_ptr_array_add(known, (gpointer)fl_option_at(i)->name);
     g_ptr_array_add(known, NULL);
     g_autofree char *hint = fl_did_you_mean(key, (const char *const *)known->pdata);
-    return usage(error, "[project] has no key “%s”%s", key, hint);
+    return fl_fail(error, FL_ERROR_USAGE, "[project] has no key “%s”%s", key, hint);
 }
 
 /* ---- [region NAME] ----------------------------------------------------------------------- */
@@ -136,7 +127,7 @@ static bool check_paints(const char *key, char **items, GError **error)
     uint8_t rgb[3];
     for (; *items; items++)
         if (**items == '#' && !fl_text_colour(*items, rgb))
-            return usage(error, "%s: “%s” is not a colour #RRGGBB", key, *items);
+            return fl_fail(error, FL_ERROR_USAGE, "%s: “%s” is not a colour #RRGGBB", key, *items);
     return true;
 }
 
@@ -145,7 +136,7 @@ static bool set_match(FlRule *rule, int i, const char *value, GError **error)
     const char *key = match_keys[i].key;
     g_auto(GStrv) items = fl_key_file_list(value);
     if (!items[0])
-        return usage(error, "%s: a name or a glob is missing", key);
+        return fl_fail(error, FL_ERROR_USAGE, "%s: a name or a glob is missing", key);
     const bool paints = strcmp(key, "match-fill") == 0 || strcmp(key, "match-stroke") == 0;
     if (paints && !check_paints(key, items, error))
         return false;
@@ -157,7 +148,8 @@ static bool set_tolerance(FlRule *rule, const char *value, GError **error)
 {
     double tolerance = 0;
     if (!fl_text_number(value, &tolerance) || tolerance < 0.01 || tolerance > 100)
-        return usage(error, "match-tolerance: “%s” is not a number from 0.01 to 100", value);
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "match-tolerance: “%s” is not a number from 0.01 to 100", value);
     rule->match_tolerance = (float)tolerance;
     return true;
 }
@@ -175,7 +167,7 @@ static bool unknown_key(const char *section, const char *key, bool matches, GErr
         g_ptr_array_add(known, (gpointer)other_matches[i]);
     g_ptr_array_add(known, NULL);
     g_autofree char *hint = fl_did_you_mean(key, (const char *const *)known->pdata);
-    return usage(error, "[%s] has no key “%s”%s", section, key, hint);
+    return fl_fail(error, FL_ERROR_USAGE, "[%s] has no key “%s”%s", section, key, hint);
 }
 
 static bool is_region_key(const char *key)
@@ -193,10 +185,10 @@ static bool set_region(FlRule *rule, const char *key, const char *value, GError 
     if (strcmp(key, "match") == 0) {
         rule->match_all = strcmp(value, "*") == 0;
         return rule->match_all ||
-               usage(error,
-                     "match: “%s” is not *; to match some of the leaves use match-fill, "
-                     "match-label and others",
-                     value);
+               fl_fail(error, FL_ERROR_USAGE,
+                       "match: “%s” is not *; to match some of the leaves use match-fill, "
+                       "match-label and others",
+                       value);
     }
     if (!is_region_key(key))
         return unknown_key("region", key, true, error);
@@ -215,14 +207,14 @@ static bool read_entry(void *data, const char *key, const char *value, int line,
     Reader *reader = data;
     FlConfig *config = reader->config;
     if (reader->place == NOWHERE)
-        return usage(error,
-                     "“%s” is above the first section; put it below [project], [defaults] "
-                     "or [region NAME]",
-                     key);
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "“%s” is above the first section; put it below [project], [defaults] "
+                       "or [region NAME]",
+                       key);
     if (!g_hash_table_add(reader->keys, g_strdup(key)))
-        return usage(error, "%s is set twice in this section", key);
+        return fl_fail(error, FL_ERROR_USAGE, "%s is set twice in this section", key);
     if (!*value)
-        return usage(error, "%s: the value is missing", key);
+        return fl_fail(error, FL_ERROR_USAGE, "%s: the value is missing", key);
     if (reader->place == PROJECT)
         return set_project(reader, key, value, error);
     if (reader->place == DEFAULTS)

@@ -1,5 +1,6 @@
 #include "params/keys.h"
 
+#include "base/error.h"
 #include "params/text.h"
 
 #include <limits.h>
@@ -14,18 +15,6 @@ bool fl_keys_are(const char *value)
     return g_regex_match_simple("@-?[0-9]+(~[0-9]+)?\\s*$", value, 0, 0);
 }
 
-static bool usage(GError **error, const char *format, ...) G_GNUC_PRINTF(2, 3);
-
-static bool usage(GError **error, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    g_autofree char *message = g_strdup_vprintf(format, arguments);
-    va_end(arguments);
-    g_set_error_literal(error, FL_ERROR, FL_ERROR_USAGE, message);
-    return false;
-}
-
 static void clear_key(void *key)
 {
     g_free(((FlKey *)key)->value);
@@ -36,17 +25,19 @@ static bool check_order(const FlKeys *keys, const FlKey *key, GError **error)
 {
     const int n = (int)keys->key->len;
     if (n == 0)
-        return key->over == 0 || usage(error,
-                                       "“%s” is the first key: there is none to replace in "
-                                       "%d frames",
-                                       key->value, key->over);
+        return key->over == 0 || fl_fail(error, FL_ERROR_USAGE,
+                                         "“%s” is the first key: there is none to replace in "
+                                         "%d frames",
+                                         key->value, key->over);
     const FlKey *before = key_at(keys, n - 1);
     if (key->frame <= before->frame)
-        return usage(error, "frame %d does not come after frame %d, that of the key before",
-                     key->frame, before->frame);
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "frame %d does not come after frame %d, that of the key before", key->frame,
+                       before->frame);
     return key->frame >= before->frame + before->over ||
-           usage(error, "frame %d comes before frame %d, in which “%s” is complete", key->frame,
-                 before->frame + before->over, before->value);
+           fl_fail(error, FL_ERROR_USAGE,
+                   "frame %d comes before frame %d, in which “%s” is complete", key->frame,
+                   before->frame + before->over, before->value);
 }
 
 /* Adds the key of a match. */
@@ -55,12 +46,13 @@ static bool add_key(FlKeys *keys, const GMatchInfo *match, GError **error)
     g_autofree char *frame = g_match_info_fetch(match, 2), *over = g_match_info_fetch(match, 3);
     FlKey key = {.value = g_match_info_fetch(match, 1)};
     bool good = fl_text_integer(frame, INT_MIN / 2, INT_MAX / 2, &key.frame) ||
-                usage(error, "“%s” is not the number of a frame", frame);
+                fl_fail(error, FL_ERROR_USAGE, "“%s” is not the number of a frame", frame);
     if (good && over && *over && !keys->replace)
-        good = usage(error, "“~%s” is for styles; a number changes evenly from key to key", over);
+        good = fl_fail(error, FL_ERROR_USAGE,
+                       "“~%s” is for styles; a number changes evenly from key to key", over);
     else if (good && over && *over)
         good = fl_text_integer(over, 0, 100000, &key.over) ||
-               usage(error, "“~%s” is not a number of frames up to 100000", over);
+               fl_fail(error, FL_ERROR_USAGE, "“~%s” is not a number of frames up to 100000", over);
     if (good && check_order(keys, &key, error)) {
         g_array_append_val(keys->key, key);
         return true;
@@ -78,7 +70,8 @@ FlKeys *fl_keys_read(const struct FlOption *option, bool replace, const char *te
         g_regex_new("\\s*(\\S.*?)@(-?[0-9]+)(?:~([0-9]+))?(?:\\s+|$)", 0, 0, NULL);
     g_autoptr(GMatchInfo) match = NULL;
     bool good = g_regex_match(form, text, 0, &match) ||
-                usage(error, "“%s” has no value before its frame; expected VALUE@FRAME", text);
+                fl_fail(error, FL_ERROR_USAGE,
+                        "“%s” has no value before its frame; expected VALUE@FRAME", text);
     while (good && g_match_info_matches(match)) {
         good = add_key(keys, match, error);
         g_match_info_next(match, NULL);

@@ -1,6 +1,6 @@
 #include "render/frame_writer.h"
 
-#include "base/parallel_error.h"
+#include "base/error.h"
 #include "io/formats.h"
 #include "io/pattern.h"
 #include "io/png.h"

@@ -1,8 +1,8 @@
 #include "render/painters.h"
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/limits.h"
-#include "base/parallel_error.h"
 #include "base/schedule.h"
 #include "guides/flow_file.h"
 #include "inspect/report.h"

@@ -1,7 +1,7 @@
 #include "style/adapt.h"
 
 #include "base/alloc.h"
-#include "base/parallel_error.h"
+#include "base/error.h"
 #include "base/rect.h"
 #include "style/resample.h"
 

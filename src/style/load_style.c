@@ -1,7 +1,7 @@
 #include "style/style_folder.h"
 
 #include "base/alloc.h"
-#include "base/parallel_error.h"
+#include "base/error.h"
 #include "guides/flow_file.h"
 #include "io/picture_series.h"
 #include "io/png.h"

@@ -1,5 +1,6 @@
 #include "style/manifest.h"
 
+#include "base/error.h"
 #include "base/suggest.h"
 #include "params/key_file.h"
 #include "params/text.h"
@@ -58,23 +59,12 @@ typedef struct Reader {
     unsigned seen; // of `keys`, a bit each
 } Reader;
 
-G_GNUC_PRINTF(2, 3)
-static bool wrong(GError **error, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    g_autofree char *what = g_strdup_vprintf(format, args);
-    va_end(args);
-    g_set_error_literal(error, FL_ERROR, FL_ERROR_STYLE, what);
-    return false;
-}
-
 static bool read_number(const char *text, const struct Key *key, float *field, GError **error)
 {
     double value;
     if (!fl_text_number(text, &value) || value < key->min || value > key->max)
-        return wrong(error, "%s = %s: expected a number from %g to %g", key->name, text, key->min,
-                     key->max);
+        return fl_fail(error, FL_ERROR_STYLE, "%s = %s: expected a number from %g to %g", key->name,
+                       text, key->min, key->max);
     *field = (float)value;
     return true;
 }
@@ -88,7 +78,7 @@ static bool read_word(const char *name, const char *text, const char *form, int 
     g_auto(GStrv) words = g_strsplit(form, "|", -1);
     g_autofree char *tail = fl_did_you_mean(text, (const char *const *)words);
     g_autofree char *list = g_strjoinv(", ", words);
-    return wrong(error, "%s = %s: expected one of %s%s", name, text, list, tail);
+    return fl_fail(error, FL_ERROR_STYLE, "%s = %s: expected one of %s%s", name, text, list, tail);
 }
 
 static bool read_value(FlStyle *style, const struct Key *key, const char *value, GError **error)
@@ -115,7 +105,8 @@ static bool read_value(FlStyle *style, const struct Key *key, const char *value,
         return true;
     case COLOUR:
         return fl_text_colour(value, field) ||
-               wrong(error, "%s = %s: expected a colour such as #f4efe6", key->name, value);
+               fl_fail(error, FL_ERROR_STYLE, "%s = %s: expected a colour such as #f4efe6",
+                       key->name, value);
     case TEXT:
         g_free(*(char **)field);
         *(char **)field = g_strdup(value);
@@ -133,7 +124,7 @@ static bool read_section(void *data, const char *name, int line, GError **error)
     while (reader->place < OTHER && strcmp(name, sections[reader->place - STYLE]) != 0)
         reader->place++;
     const char *meant = reader->place == OTHER ? fl_suggest(name, sections) : NULL;
-    return !meant || wrong(error, "[%s]: expected [%s]", name, meant);
+    return !meant || fl_fail(error, FL_ERROR_STYLE, "[%s]: expected [%s]", name, meant);
 }
 
 static bool read_key(void *data, const char *name, const char *value, int line, GError **error)
@@ -142,7 +133,8 @@ static bool read_key(void *data, const char *name, const char *value, int line, 
     const char *names[G_N_ELEMENTS(keys) + 1] = {NULL};
     int n = 0;
     if (reader->place == NOWHERE)
-        return wrong(error, "“%s” stands above the first section: expected [style]", name);
+        return fl_fail(error, FL_ERROR_STYLE,
+                       "“%s” stands above the first section: expected [style]", name);
     for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
         if (MAX(keys[i].section, STYLE) != reader->place)
             continue;
@@ -150,7 +142,7 @@ static bool read_key(void *data, const char *name, const char *value, int line, 
         if (strcmp(name, keys[i].name) != 0)
             continue;
         if (reader->seen & 1u << i)
-            return wrong(error, "%s is given a second time", name);
+            return fl_fail(error, FL_ERROR_STYLE, "%s is given a second time", name);
         reader->seen |= 1u << i;
         reader->style->guessed &= ~(unsigned)keys[i].replaces;
         return read_value(reader->style, &keys[i], value, error);
@@ -159,7 +151,8 @@ static bool read_key(void *data, const char *name, const char *value, int line, 
         return true;
     g_autofree char *all = g_strjoinv(", ", (char **)names);
     g_autofree char *tail = fl_did_you_mean(name, names);
-    return wrong(error, "unknown key “%s”: expected one of %s%s", name, all, tail);
+    return fl_fail(error, FL_ERROR_STYLE, "unknown key “%s”: expected one of %s%s", name, all,
+                   tail);
 }
 
 bool fl_manifest_read(FlStyle *style, const char *path, GError **error)

@@ -1,7 +1,7 @@
 #include "synth/enlargement.h"
 
 #include "base/alloc.h"
-#include "base/parallel_error.h"
+#include "base/error.h"
 #include "base/spill.h"
 #include "synth/spline.h"
 

@@ -1,7 +1,7 @@
 #include "synth/exemplar.h"
 
 #include "base/alloc.h"
-#include "base/parallel_error.h"
+#include "base/error.h"
 #include "base/schedule.h"
 #include "base/spill.h"
 #include "guides/distance.h"

@@ -1,9 +1,12 @@
-/* Keeps the first error of parallel workers. */
-#ifndef FLUIDY_BASE_PARALLEL_ERROR_H
-#define FLUIDY_BASE_PARALLEL_ERROR_H
+/* Sets errors, and keeps the first one of parallel workers. */
+#ifndef FLUIDY_BASE_ERROR_H
+#define FLUIDY_BASE_ERROR_H
 
-#include <glib.h>
+#include <fluidy/error.h>
 #include <stdbool.h>
+
+/** Sets an error of FL_ERROR. Returns: false. */
+bool fl_fail(GError **error, FlError code, const char *format, ...) G_GNUC_PRINTF(3, 4);
 
 /** Moves `failure` (may be NULL) into *first, or frees it if there is one already. Any thread.
  */
