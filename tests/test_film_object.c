@@ -320,6 +320,35 @@ static void a_frame_can_be_stopped_within(void)
     g_assert_cmpmem(again, 4 * WIDTH * HEIGHT, first, 4 * WIDTH * HEIGHT);
 }
 
+static bool stop_at_guides(const FlProgress *progress, void *data)
+{
+    const bool stops = *(bool *)data && g_str_equal(progress->stage, "guides");
+    *(bool *)data = *(bool *)data && !stops;
+    return !stops;
+}
+
+static void a_stop_before_the_paint_keeps_the_drawing(void)
+{
+    g_autoptr(Case) test = case_new();
+    g_autoptr(GError) error = NULL;
+    g_autofree uint8_t *first = frame_of(test->film, 2);
+    const int before = painted(test->film);
+    bool stops = true;
+    const FlFilmCalls calls = {.size = sizeof calls, .progress = stop_at_guides, .data = &stops};
+    fl_film_set_calls(test->film, &calls);
+    set(test->film, NULL, "w-temp", "3");
+    g_assert_null(fl_film_frame(test->film, 2, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_INTERRUPTED);
+    set(test->film, NULL, "w-temp", NULL);
+    g_autofree uint8_t *again = frame_of(test->film, 2);
+    g_assert_cmpmem(again, 4 * WIDTH * HEIGHT, first, 4 * WIDTH * HEIGHT);
+    g_assert_cmpint(fl_film_stats(test->film)->n_read, ==, 1);
+    g_assert_cmpint(painted(test->film), ==, before);
+    set(test->film, NULL, "w-temp", "3");
+    write_film(test);
+    assert_as_written(test, 2);
+}
+
 static void regions_and_drawings_are_told(void)
 {
     g_autoptr(Case) test = case_new();
@@ -358,6 +387,7 @@ int main(int argc, char **argv)
     TEST(drafts_come_at_once_and_leave_frames_alone);
     TEST(a_config_of_text_reads_no_drawing_anew);
     TEST(a_frame_can_be_stopped_within);
+    TEST(a_stop_before_the_paint_keeps_the_drawing);
     TEST(regions_and_drawings_are_told);
     TEST(mistakes_leave_the_film_as_it_was);
     return g_test_run();

@@ -9,6 +9,8 @@
 #include "render/frames.h"
 #include <string.h>
 
+enum { TEXTS_BYTES = 4096 }; // of a block of texts
+
 /* The frames of a film by its options, or drafts of them. */
 typedef struct Take {
     FlRenderOptions asked; // the options without those of files
@@ -16,13 +18,14 @@ typedef struct Take {
     FlFrames frames;
     bool open;     // frames follow the options as they were when they changed last
     bool changed;  // since then
-    int n_painted; // before the take was opened last
+    int n_painted; // by painters that are freed
 } Take;
 
 struct FlFilm {
     char **inputs;
     FlRenderOptions options; // as they were set; settings are in `settings`
-    GPtrArray *strings;      // of the options, kept until the film is closed
+    GPtrArray *strings;      // of values of options, kept until the film is closed
+    GStringChunk *texts;     // of settings and configs, each once
     GArray *settings;        // of FlSetting
     int most_side;           // of drafts, px
     Take full, draft;
@@ -39,6 +42,7 @@ FlFilm *fl_film_open(const char *const *inputs)
     FlFilm *film = g_new0(FlFilm, 1);
     film->inputs = g_strdupv((char **)inputs);
     film->strings = g_ptr_array_new_with_free_func(g_free);
+    film->texts = g_string_chunk_new(TEXTS_BYTES);
     film->settings = g_array_new(FALSE, FALSE, sizeof(FlSetting));
     film->full.settings = g_array_new(FALSE, FALSE, sizeof(FlSetting));
     film->draft.settings = g_array_new(FALSE, FALSE, sizeof(FlSetting));
@@ -46,25 +50,18 @@ FlFilm *fl_film_open(const char *const *inputs)
     return film;
 }
 
-/* Frees the drawing and all data derived from the drawing; the next frame reads it again. */
-static void forget(Take *take)
-{
-    if (take->open)
-        take->n_painted += fl_painters_painted(&take->frames.painters);
-    if (take->open)
-        fl_frames_clear(&take->frames);
-    take->open = false;
-}
-
 void fl_film_close(FlFilm *film)
 {
     if (!film)
         return;
     fl_composite_clear(&film->composite);
-    forget(&film->full);
-    forget(&film->draft);
+    if (film->full.open)
+        fl_frames_clear(&film->full.frames);
+    if (film->draft.open)
+        fl_frames_clear(&film->draft.frames);
     g_strfreev(film->inputs);
     g_ptr_array_unref(film->strings);
+    g_string_chunk_free(film->texts);
     g_array_unref(film->settings);
     g_array_unref(film->full.settings);
     g_array_unref(film->draft.settings);
@@ -77,10 +74,7 @@ void fl_film_close(FlFilm *film)
 
 static const char *keep(FlFilm *film, const char *text)
 {
-    char *copy = g_strdup(text);
-    if (copy)
-        g_ptr_array_add(film->strings, copy);
-    return copy;
+    return text ? g_string_chunk_insert_const(film->texts, text) : NULL;
 }
 
 static bool no_such_option(const char *name, GError **error)
@@ -222,7 +216,7 @@ static void ask(FlFilm *film, Take *take)
 
 /* ---- frames ---------------------------------------------------------------------------------- */
 
-/* A take that is open stays so if its new options are wrong. */
+/* A take that fails keeps its drawing, its styles and the stored paint for the next options. */
 static bool follow_options(FlFilm *film, Take *take, GError **error)
 {
     const size_t memory = (size_t)MIN(fl_limit(FL_LIMIT_MEMORY) / 8, 512) << 20;
@@ -244,7 +238,9 @@ static bool follow_options(FlFilm *film, Take *take, GError **error)
     film->stats.n_read += plan->drawing != read;
     if (fl_frames_check(&take->frames, error) && fl_frames_prepare(&take->frames, error))
         return true;
-    forget(take);
+    take->n_painted += fl_painters_painted(&take->frames.painters);
+    fl_painters_clear(&take->frames.painters);
+    g_clear_pointer(&take->frames.old_plan, fl_plan_free);
     return false;
 }
 

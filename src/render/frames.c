@@ -313,11 +313,12 @@ static bool make_sheet(FlFrames *frames, GError **error)
     if (fl_digest_is_same(made_of, frames->sheet_of))
         return true;
     g_clear_pointer(&frames->sheet, fl_paper_sheet_free);
-    frames->sheet_of = made_of;
-    if (!fl_paper_sheet_make(&choice, !o->background, width, height, &frames->sheet, error))
+    frames->sheet_of = (FlDigest){0};
+    if (!fl_paper_sheet_make(&choice, !o->background, width, height, &frames->sheet, error) ||
+        (frames->sheet && fl_plan_is_large(plan) && !fl_paper_sheet_put_away(frames->sheet, error)))
         return false;
-    return !frames->sheet || !fl_plan_is_large(plan) ||
-           fl_paper_sheet_put_away(frames->sheet, error);
+    frames->sheet_of = made_of;
+    return true;
 }
 
 bool fl_frames_check(FlFrames *frames, GError **error)
