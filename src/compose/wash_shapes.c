@@ -85,8 +85,6 @@ void fl_field_blur(const FlWashField *field, float *plane, float sigma_px)
     transpose(turned, height, width, plane);
 }
 
-/* The mean of a plane within the shapes around each point: nothing leaks in over the contour.
- * around: the mask, as blurred. */
 void fl_field_blur_inside(const FlWashField *field, float *plane, float sigma_px,
                           const float *around)
 {
@@ -121,7 +119,6 @@ static void add_coverage(const FlWashField *field, const FlDraw *draw, float *pl
     }
 }
 
-/* The masks of the draws of wash w, and of its regions as far as the others leave them in sight. */
 void fl_field_fill_masks(const FlWashField *field, const FlWashes *washes, int w,
                          const FlDrawList *draws)
 {
@@ -167,8 +164,6 @@ void fl_field_divide(const FlWashField *field)
 
 /* ---- light and shadow, pools ----------------------------------------------------------------- */
 
-/* The place of each point along the light, from the middle of what surrounds it, by the extent of
- * that: as of the shape itself if it is small, as of its margin if it is large. */
 void fl_field_find_side(const FlWashField *field)
 {
     const FlWash *wash = field->wash;
@@ -205,7 +200,6 @@ static void find_on_page(const FlWashField *field, int first, int n, int page_px
         share[i] = line[MIN(first / step + i, all - 1)];
 }
 
-/* Wet paint gathers inside contours that face the shadow. The page's edge is no contour. */
 void fl_field_find_pools(const FlWashField *field, float *pool)
 {
     const FlWash *wash = field->wash;
@@ -233,7 +227,6 @@ void fl_field_find_pools(const FlWashField *field, float *pool)
         }
 }
 
-/* A share at each point by which it lies in something large: lines and dots have no wash. */
 void fl_field_find_breadth(const FlWashField *field, float *breadth)
 {
     const size_t n = fl_wash_points(field->wash);
