@@ -67,18 +67,6 @@ static void noise_along(const Hand *hand, int key, const float *along, const flo
     noise_at(hand, key, askew, across, cell, n, noise);
 }
 
-/* The places of n pixels of the frame on the page as it was when the region was first seen. */
-static void find_places(const FlMarking *marking, int x, int y, int n, float *at_x, float *at_y)
-{
-    const FlAnchor *anchor = &marking->anchor;
-    const float px = 1 / marking->paper_px;
-    for (int i = 0; i < n; i++) {
-        const float dx = (float)(x + i) - anchor->x, dy = (float)y - anchor->y;
-        at_x[i] = (anchor->rest_x + anchor->cosine * dx + anchor->sine * dy) * px;
-        at_y[i] = (anchor->rest_y + anchor->cosine * dy - anchor->sine * dx) * px;
-    }
-}
-
 /* The height of the paper, in standard deviations; without a sheet, that of some paper. */
 static float height_at(const FlMarking *marking, int x, int y)
 {
@@ -111,7 +99,7 @@ static void lay_pixels(const Hand *hand, int x, int y, int n, const float *depth
     const FlMarking *marking = hand->marking;
     const Tool *tool = hand->tool;
     Row px, py, along, across, stick, line, smear, rub, edge;
-    find_places(marking, x, y, n, px, py);
+    fl_anchor_rest_row(&marking->anchor, x, y, 1, n, 1 / marking->paper_px, px, py);
     noise_at(hand, KEY_BEND, px, py, bent, n, stick);
     for (int i = 0; i < n; i++) {
         along[i] = hand->along[0] * px[i] + hand->along[1] * py[i];

@@ -18,14 +18,9 @@ typedef struct Sources {
 
 static void find_sources(const FlGaps *gaps, int x, int y, int n, Sources *from)
 {
-    const FlAnchor *anchor = &gaps->anchor;
     const float px = 1 / (gaps->scale * CELL_PX), most = gaps->strength * MOST_PX * gaps->scale;
     float across[FL_NOISE_ROW], down[FL_NOISE_ROW], off[2][FL_NOISE_ROW];
-    for (int i = 0; i < n; i++) {
-        const float dx = (float)(x + i) - anchor->x, dy = (float)y - anchor->y;
-        across[i] = (anchor->cosine * dx + anchor->sine * dy) * px;
-        down[i] = (anchor->cosine * dy - anchor->sine * dx) * px;
-    }
+    fl_anchor_rest_row(&gaps->anchor, x, y, 1, n, px, across, down);
     fl_noise_octaves_row(fl_key(gaps->key, KEY_X), across, down, n, 2, .5f, off[0]);
     fl_noise_octaves_row(fl_key(gaps->key, KEY_Y), across, down, n, 2, .5f, off[1]);
     for (int i = 0; i < n; i++) {

@@ -45,14 +45,9 @@ static void noise_at(uint64_t key, const Places *at, const float cell[2], float 
 static void find_places(const FlWash *wash, const FlWashPart *part, float scale, int x, int y,
                         int n, Places *at)
 {
-    const float px = 1 / scale;
     *at = (Places){.n = n}; // not bent yet
-    for (int i = 0; i < n; i++) {
-        const float dx = (float)(wash->box.x + (x + i) * wash->step) - part->anchor.x;
-        const float dy = (float)(wash->box.y + y * wash->step) - part->anchor.y;
-        at->x[i] = (part->anchor.rest_x + part->anchor.cosine * dx + part->anchor.sine * dy) * px;
-        at->y[i] = (part->anchor.rest_y + part->anchor.cosine * dy - part->anchor.sine * dx) * px;
-    }
+    fl_anchor_rest_row(&part->anchor, wash->box.x + x * wash->step, wash->box.y + y * wash->step,
+                       wash->step, n, 1 / scale, at->x, at->y);
     const float cell[2] = {150, 150};
     noise_at(fl_key(wash->key, KEY_BEND_X), at, cell, 0, 1, 1, at->bend_x);
     noise_at(fl_key(wash->key, KEY_BEND_Y), at, cell, 0, 1, 1, at->bend_y);

@@ -61,6 +61,11 @@ typedef struct FlAnchor {
     float side;           // of a square as large as the region's shapes, px; the same in all frames
 } FlAnchor;
 
+/** Finds the places that n points of a row had when their anchor was at rest, times `scale`; the
+ * points lie `step` px apart, from (x, y) on. */
+void fl_anchor_rest_row(const FlAnchor *anchor, int x, int y, int step, int n, float scale,
+                        float *rest_x, float *rest_y);
+
 #define FL_LIMBS 12 // of a region, at most
 
 /** A part of a region that moves by itself, such as a leg: an anchor of its own, and where it is.

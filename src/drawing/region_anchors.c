@@ -290,6 +290,17 @@ static FlPoint at_rest(const FlAnchor *anchor, FlPoint p)
     return (FlPoint){(double)anchor->rest_x + back.x, (double)anchor->rest_y + back.y};
 }
 
+void fl_anchor_rest_row(const FlAnchor *anchor, int x, int y, int step, int n, float scale,
+                        float *rest_x, float *rest_y)
+{
+    const float c = anchor->cosine, s = anchor->sine, dy = (float)y - anchor->y;
+    for (int i = 0; i < n; i++) {
+        const float dx = (float)(x + i * step) - anchor->x;
+        rest_x[i] = (anchor->rest_x + c * dx + s * dy) * scale;
+        rest_y[i] = (anchor->rest_y + c * dy - s * dx) * scale;
+    }
+}
+
 /* A limb begins where its region has it. */
 static void begin_limb(FlAnchor *limb, const FlAnchor *region, FlPoint middle)
 {
