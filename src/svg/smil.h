@@ -2,13 +2,7 @@
 #ifndef FLUIDY_SVG_SMIL_H
 #define FLUIDY_SVG_SMIL_H
 
-#include "svg/document.h"
-
-/** The length of animations. */
-typedef struct FlFilmLength {
-    double end;    // seconds at which the last finite animation ends; 0: all are endless
-    GArray *loops; // double: periods in seconds of those that go on for ever
-} FlFilmLength;
+#include "svg/smil_timing.h"
 
 /**
  * Puts the values that animations have after so many seconds into the document and removes the
