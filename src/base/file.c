@@ -1,5 +1,6 @@
 #include "base/file.h"
 
+#include "base/error.h"
 #include "base/limits.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -12,16 +13,14 @@
 
 static bool cannot_read(const char *path, GError **error)
 {
-    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be read: %s", path, g_strerror(errno));
-    return false;
+    return fl_fail(error, FL_ERROR_INPUT, "%s: cannot be read: %s", path, g_strerror(errno));
 }
 
 static bool is_regular(const struct stat *info, const char *path, FlError code, GError **error)
 {
     if (S_ISREG(info->st_mode) || S_ISDIR(info->st_mode))
         return true;
-    g_set_error(error, FL_ERROR, (gint)code, "%s: it is a pipe or a device; expected a file", path);
-    return false;
+    return fl_fail(error, code, "%s: it is a pipe or a device; expected a file", path);
 }
 
 bool fl_file_check(const char *path, FlError code, GError **error)
@@ -36,17 +35,13 @@ static bool wait_for(int fd, const char *path, const FlFileWait *wait, GError **
     const gint64 end = g_get_monotonic_time() + fl_limit(FL_LIMIT_SECONDS) * G_USEC_PER_SEC;
     struct pollfd ready = {.fd = fd, .events = POLLIN};
     while (poll(&ready, 1, TICK_MS) <= 0) {
-        if (wait->stopped && wait->stopped(wait->data)) {
-            g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "%s: interrupted", path);
-            return false;
-        }
-        if (g_get_monotonic_time() > end) {
-            g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                        "%s: nothing was written to it for %d s; use ‘limit’ seconds=N to wait "
-                        "longer",
-                        path, (int)fl_limit(FL_LIMIT_SECONDS));
-            return false;
-        }
+        if (wait->stopped && wait->stopped(wait->data))
+            return fl_fail(error, FL_ERROR_INTERRUPTED, "%s: interrupted", path);
+        if (g_get_monotonic_time() > end)
+            return fl_fail(error, FL_ERROR_LIMIT,
+                           "%s: nothing was written to it for %d s; use ‘limit’ seconds=N to wait "
+                           "longer",
+                           path, (int)fl_limit(FL_LIMIT_SECONDS));
     }
     return true;
 }

@@ -1,5 +1,6 @@
 #include "base/headroom.h"
 
+#include "base/error.h"
 #include "base/schedule.h"
 #include <pthread.h>
 #include <sys/mman.h>
@@ -49,9 +50,9 @@ bool fl_headroom_check(GError **error)
     const size_t bytes = LIBRARY_BYTES + stack_bytes();
     if (can_map(bytes))
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                "not enough memory to start: %zu MiB more are needed; use fewer threads or raise "
-                "the limit (ulimit -v)",
-                bytes / MIB);
-    return false;
+    return fl_fail(
+        error, FL_ERROR_NO_MEMORY,
+        "not enough memory to start: %zu MiB more are needed; use fewer threads or raise "
+        "the limit (ulimit -v)",
+        bytes / MIB);
 }

@@ -1,5 +1,6 @@
 #include "base/limits.h"
 
+#include "base/error.h"
 #include "base/memory.h"
 #include "base/suggest.h"
 #include <string.h>
@@ -35,9 +36,7 @@ static bool no_such_limit(const char *name, GError **error)
         names[i] = limits[i].name;
     g_autofree char *list = g_strjoinv(", ", (char **)names);
     g_autofree char *hint = fl_did_you_mean(name, names);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "no limit “%s”%s; the limits are: %s", name, hint,
-                list);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE, "no limit “%s”%s; the limits are: %s", name, hint, list);
 }
 
 bool fl_limit_set(const char *text, GError **error)
@@ -50,12 +49,10 @@ bool fl_limit_set(const char *text, GError **error)
     if (i == FL_N_LIMITS)
         return no_such_limit(name, error);
     guint64 number = 0;
-    if (!g_ascii_string_to_unsigned(value, 10, 1, (guint64)limits[i].most, &number, NULL)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "limit %s: “%s” is not an integer from 1 to %" G_GINT64_FORMAT " (%s)", name,
-                    value, limits[i].most, limits[i].what);
-        return false;
-    }
+    if (!g_ascii_string_to_unsigned(value, 10, 1, (guint64)limits[i].most, &number, NULL))
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "limit %s: “%s” is not an integer from 1 to %" G_GINT64_FORMAT " (%s)", name,
+                       value, limits[i].most, limits[i].what);
     chosen[i] = (int64_t)number;
     return true;
 }
@@ -64,9 +61,8 @@ bool fl_limit_check(FlLimit limit, double wanted, const char *where, GError **er
 {
     if (wanted <= (double)fl_limit(limit))
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                "%s: %.10g %s, more than the limit of %" G_GINT64_FORMAT
-                "; use ‘limit’ %s=N to raise it",
-                where, wanted, limits[limit].what, fl_limit(limit), limits[limit].name);
-    return false;
+    return fl_fail(error, FL_ERROR_LIMIT,
+                   "%s: %.10g %s, more than the limit of %" G_GINT64_FORMAT
+                   "; use ‘limit’ %s=N to raise it",
+                   where, wanted, limits[limit].what, fl_limit(limit), limits[limit].name);
 }

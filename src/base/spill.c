@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/compress.h"
+#include "base/error.h"
 #include "base/file.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -36,11 +37,9 @@ static bool open_file(GError **error)
     g_autofree char *name = g_build_filename(g_get_tmp_dir(), "fluidy-XXXXXX", NULL);
     shared.fd = g_mkstemp_full(name, O_RDWR | O_CLOEXEC, 0600);
     shared.end = 0;
-    if (shared.fd < 0) {
-        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot make a temporary file: %s",
-                    g_get_tmp_dir(), g_strerror(errno));
-        return false;
-    }
+    if (shared.fd < 0)
+        return fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot make a temporary file: %s",
+                       g_get_tmp_dir(), g_strerror(errno));
     g_unlink(name);
     return true;
 }
@@ -99,25 +98,20 @@ bool fl_spill_put(FlSpill *spill, size_t block, const void *data, size_t bytes, 
     if (!packed)
         return false;
     const size_t packed_bytes = fl_compress(&part, 1, packed, room);
-    if (packed_bytes == 0) {
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for a temporary block");
-        return false;
-    }
+    if (packed_bytes == 0)
+        return fl_fail(error, FL_ERROR_NO_MEMORY, "not enough memory for a temporary block");
     const int64_t offset = reserve(packed_bytes);
-    if (!fl_pwrite_all(shared.fd, packed, packed_bytes, offset)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot write a temporary file: %s",
-                    g_get_tmp_dir(), g_strerror(errno));
-        return false;
-    }
+    if (!fl_pwrite_all(shared.fd, packed, packed_bytes, offset))
+        return fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot write a temporary file: %s",
+                       g_get_tmp_dir(), g_strerror(errno));
     spill->blocks[block] = (Block){offset, packed_bytes, bytes};
     return true;
 }
 
 static bool cannot_read(const char *why, GError **error)
 {
-    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot read a temporary file back: %s",
-                g_get_tmp_dir(), why);
-    return false;
+    return fl_fail(error, FL_ERROR_INPUT, "%s: cannot read a temporary file back: %s",
+                   g_get_tmp_dir(), why);
 }
 
 bool fl_spill_get(const FlSpill *spill, size_t block, void *data, size_t bytes, GError **error)

@@ -1,6 +1,7 @@
 #include "base/state_bytes.h"
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include <string.h>
 
 /*
@@ -80,8 +81,7 @@ GBytes *fl_state_bytes_pack(const void *header, size_t size, const FlSpan *parts
 
 bool fl_state_bytes_damaged(const char *what, GError **error)
 {
-    g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "a region's state is damaged: %s", what);
-    return false;
+    return fl_fail(error, FL_ERROR_CHANGED, "a region's state is damaged: %s", what);
 }
 
 bool fl_state_bytes_header(GBytes *bytes, void *header, size_t size, GError **error)

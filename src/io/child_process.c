@@ -1,5 +1,6 @@
 #include "io/child_process.h"
 
+#include "base/error.h"
 #include "base/limits.h"
 
 #include <errno.h>
@@ -64,9 +65,8 @@ static bool spawn(FlChild *child, const char *const *arguments, int theirs, int 
             child->errors, &file, &target, file >= 0, &child->pid, NULL, NULL, NULL, &trouble))
         return true;
     child->pid = 0;
-    g_set_error(error, FL_ERROR, error_code(child), "%s: cannot be started: %s", child->program,
-                trouble->message);
-    return false;
+    return fl_fail(error, error_code(child), "%s: cannot be started: %s", child->program,
+                   trouble->message);
 }
 
 FlChild *fl_child_start(const char *const *arguments, FlChildStream stream, int file,
@@ -133,8 +133,7 @@ static double worked_s(const FlChild *child)
 static bool give_up(FlChild *child, int code, const char *why, GError **error)
 {
     kill_child(child);
-    g_set_error(error, FL_ERROR, code, "%s %s", child->program, why);
-    return false;
+    return fl_fail(error, code, "%s %s", child->program, why);
 }
 
 /* Waits for one of the events on the stream; 0: for the end of the child. */
@@ -169,11 +168,10 @@ static bool report_death(FlChild *child, GError **error)
         return false;
     g_autofree char *words = fl_child_stderr_tail(child);
     const char *line = strrchr(words, '\n');
-    g_set_error(error, FL_ERROR, error_code(child), "%s stopped: %s", child->program,
-                !*words ? "it did not say why"
-                : line  ? line + 1
-                        : words);
-    return false;
+    return fl_fail(error, error_code(child), "%s stopped: %s", child->program,
+                   !*words ? "it did not say why"
+                   : line  ? line + 1
+                           : words);
 }
 
 bool fl_child_write(FlChild *child, const void *data, size_t bytes, GError **error)

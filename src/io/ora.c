@@ -1,4 +1,5 @@
 /* OpenRaster files [freedesktop.org, OpenRaster 0.0.5], which Krita, MyPaint and GIMP open. */
+#include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/formats.h"
 #include "io/png.h"
@@ -257,9 +258,8 @@ static bool ora_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
     archive_clear(&archive);
     if (put)
         return fl_atomic_seal(&file, mark, error);
-    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
-                "the archive could not be made; is the disk full?");
-    return false;
+    return fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
+                   "the archive could not be made; is the disk full?");
 }
 
 const FlSinkFormat fl_sink_ora = {

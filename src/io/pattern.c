@@ -1,5 +1,6 @@
 #include "io/pattern.h"
 
+#include "base/error.h"
 #include <string.h>
 
 #define MOST_DIGITS 9 // so that a number fits an int
@@ -46,14 +47,12 @@ static bool find_number(const char *name, Place *place, GError **error)
     for (const char *s = strchr(name, '%'); s; s = strchr(s, '%')) {
         int width = 0;
         const size_t n = s[1] == '%' ? 2 : conversion(s, &width);
-        if (n == 0 || (width > 0 && place->length > 0)) {
-            g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                        n ? "%s: “%.4s” is a second frame number; expected one"
-                          : "%s: “%.4s” is no frame number; expected %%d, %%04d or ####, and "
-                            "%%%% for a percent sign",
-                        name, s);
-            return false;
-        }
+        if (n == 0 || (width > 0 && place->length > 0))
+            return fl_fail(error, FL_ERROR_USAGE,
+                           n ? "%s: “%.4s” is a second frame number; expected one"
+                             : "%s: “%.4s” is no frame number; expected %%d, %%04d or ####, and "
+                               "%%%% for a percent sign",
+                           name, s);
         if (width > 0)
             *place = (Place){(size_t)(s - name), n, width};
         s += n;

@@ -1,5 +1,6 @@
 #include "io/picture_series.h"
 
+#include "base/error.h"
 #include "io/pattern.h"
 
 #include <string.h>
@@ -154,17 +155,14 @@ bool fl_series_check(const FlSeries *series, GError **error)
 {
     for (int i = 1; i < series->n; i++) {
         const int before = series->number[i - 1];
-        if (series->number[i] == before) {
-            g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s and %s have the same number",
-                        series->path[i - 1], series->path[i]);
-            return false;
-        }
+        if (series->number[i] == before)
+            return fl_fail(error, FL_ERROR_STYLE, "%s and %s have the same number",
+                           series->path[i - 1], series->path[i]);
         if (series->number[i] > before + 1) {
             g_autofree char *missing = fl_series_path(series, before + 1);
-            g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
-                        "%s is missing: expected every number from %d to %d", missing,
-                        series->number[0], series->number[series->n - 1]);
-            return false;
+            return fl_fail(error, FL_ERROR_STYLE,
+                           "%s is missing: expected every number from %d to %d", missing,
+                           series->number[0], series->number[series->n - 1]);
         }
     }
     return true;

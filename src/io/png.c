@@ -1,5 +1,6 @@
 #include "io/png.h"
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/file.h"
 #include "io/atomic_file.h"
 #include "io/provenance.h"
@@ -230,9 +231,8 @@ bool fl_png_save(const FlPng *picture, const char *path, bool overwrite, GError 
     errno = 0;
     if (encode(picture, &target, &trouble))
         return fl_atomic_seal(&file, picture->mark, error);
-    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
-                errno ? g_strerror(errno) : trouble.message);
-    return false;
+    return fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
+                   errno ? g_strerror(errno) : trouble.message);
 }
 
 FlPicture *fl_picture_read_png(const char *path, GError **error)
@@ -359,11 +359,9 @@ bool fl_png_write(const char *path, const uint8_t *data, int width, int height, 
         g_prefix_error(error, "%s: ", path);
         return false;
     }
-    if (!png_image_write_to_memory(&png, file, &bytes, 0, data, 0, NULL)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot make the PNG picture: %s", path,
-                    png.message);
-        return false;
-    }
+    if (!png_image_write_to_memory(&png, file, &bytes, 0, data, 0, NULL))
+        return fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot make the PNG picture: %s", path,
+                       png.message);
     g_auto(FlAtomicFile) out = {0};
     if (!fl_atomic_open(&out, path, true, error))
         return false;
@@ -376,6 +374,5 @@ bool fl_png_named(const char *path, const char *what, GError **error)
     const size_t length = strlen(path);
     if (length > 4 && g_ascii_strcasecmp(path + length - 4, ".png") == 0)
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: %s PNG files; expected .png", path, what);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE, "%s: %s PNG files; expected .png", path, what);
 }

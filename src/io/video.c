@@ -1,4 +1,5 @@
 /* Films, through the ffmpeg program. */
+#include "base/error.h"
 #include "io/atomic_file.h"
 #include "io/child_process.h"
 #include "io/formats.h"
@@ -130,20 +131,17 @@ static bool video_open(FlSink *sink, GError **error)
     g_autofree char *program = g_find_program_in_path("ffmpeg");
     VideoState *state = g_new0(VideoState, 1);
     sink->state = state;
-    if (!program) {
-        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT,
-                    "%s: films are written by the ffmpeg program, which is not installed; install "
-                    "it, or write frames such as film_%%04d.png",
-                    params->path);
-        return false;
-    }
-    if (!params->opaque && !codec_of(sink->format)->with_alpha) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: H.264 has no transparency; expected a background, or a .mov, .webm or "
-                    ".mkv file",
-                    params->path);
-        return false;
-    }
+    if (!program)
+        return fl_fail(
+            error, FL_ERROR_OUTPUT,
+            "%s: films are written by the ffmpeg program, which is not installed; install "
+            "it, or write frames such as film_%%04d.png",
+            params->path);
+    if (!params->opaque && !codec_of(sink->format)->with_alpha)
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "%s: H.264 has no transparency; expected a background, or a .mov, .webm or "
+                       ".mkv file",
+                       params->path);
     if (!fl_atomic_reserve(&state->file, params->path, params->overwrite, error))
         return false;
     state->child = start_ffmpeg(sink, &state->file, error);

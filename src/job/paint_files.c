@@ -1,6 +1,7 @@
 #include "job/paint_files.h"
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "io/pattern.h"
 #include "io/png.h"
 #include "svg/pose.h"
@@ -140,24 +141,22 @@ void fl_paint_file_find_place(const FlDrawing *drawing, FlRegionPlan *region)
 
 bool fl_paint_file_load(FlPaintedRegion *painted, const char *path, GError **error)
 {
-    if (!g_file_test(path, G_FILE_TEST_EXISTS)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: there is no such file; ‘paint’ without ‘merge’ writes the paint of “%s”",
-                    path, painted->name);
-        return false;
-    }
+    if (!g_file_test(path, G_FILE_TEST_EXISTS))
+        return fl_fail(
+            error, FL_ERROR_INPUT,
+            "%s: there is no such file; ‘paint’ without ‘merge’ writes the paint of “%s”", path,
+            painted->name);
     g_autoptr(FlPicture) picture = fl_picture_read_png(path, error);
     if (!picture)
         return false;
     const FlRect rect = painted->rect;
     const bool whole = picture->width == painted->width && picture->height == painted->height;
-    if (!whole && (picture->width != rect.width || picture->height != rect.height)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: %dx%d pixels: expected %dx%d as the frames have, or %dx%d of the region",
-                    path, picture->width, picture->height, painted->width, painted->height,
-                    rect.width, rect.height);
-        return false;
-    }
+    if (!whole && (picture->width != rect.width || picture->height != rect.height))
+        return fl_fail(
+            error, FL_ERROR_INPUT,
+            "%s: %dx%d pixels: expected %dx%d as the frames have, or %dx%d of the region", path,
+            picture->width, picture->height, painted->width, painted->height, rect.width,
+            rect.height);
     if (!fl_painted_renew(painted, error))
         return false;
     load_anchor(path, painted);

@@ -1,5 +1,6 @@
 #include "job/plan.h"
 
+#include "base/error.h"
 #include "base/limits.h"
 #include "base/memory.h"
 #include "base/page.h"
@@ -107,11 +108,10 @@ static bool look_at_paint(FlPlan *plan, GError **error)
 
 static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
 {
-    if (!plan->options.inputs || !plan->options.inputs[0]) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "no input: expected SVG files, a folder, or a pattern such as input_%%04d.svg");
-        return false;
-    }
+    if (!plan->options.inputs || !plan->options.inputs[0])
+        return fl_fail(
+            error, FL_ERROR_USAGE,
+            "no input: expected SVG files, a folder, or a pattern such as input_%%04d.svg");
     if (!check_options(&plan->options, error) || !fl_plan_find_output(plan, error))
         return false;
     if (plan->finished == FL_FINISHED_ALL ||

@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "job/plan.h"
 
 #include "drawing/open_drawing.h"
@@ -41,12 +42,10 @@ static bool name_output(FlPlan *plan, const FlSequence *sequence, GError **error
         return false;
     g_autofree char *pattern = requested ? g_strdup(requested) : default_output(plan);
     plan->output = fl_output_of_film(pattern, sequence->name);
-    if (!plan->format->film && !fl_output_is_pattern(plan->output) && sequence->n > 1) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: one file for %d frames; expected a number in the name, such as %%04d",
-                    plan->output, sequence->n);
-        return false;
-    }
+    if (!plan->format->film && !fl_output_is_pattern(plan->output) && sequence->n > 1)
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "%s: one file for %d frames; expected a number in the name, such as %%04d",
+                       plan->output, sequence->n);
     return choose_frames(plan, error);
 }
 
@@ -85,13 +84,12 @@ static bool parse_part(FlPlan *plan, GError **error)
     plan->n_parts = 1;
     if (part && !is_of_film(part) &&
         (sscanf(part, "%5d/%5d%n", &k, &plan->n_parts, &length) != 2 || part[length] || k < 1 ||
-         k > plan->n_parts)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "‘part’: “%s” is not understood; expected film, or K/N such as 2/4, K from 1 "
-                    "to N",
-                    part);
-        return false;
-    }
+         k > plan->n_parts))
+        return fl_fail(
+            error, FL_ERROR_USAGE,
+            "‘part’: “%s” is not understood; expected film, or K/N such as 2/4, K from 1 "
+            "to N",
+            part);
     plan->part = k - 1;
     return true;
 }

@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "job/plan.h"
 
 #include "base/limits.h"
@@ -132,9 +133,9 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
     plan->painted_of[region] = plan->n_painted++; // from here on, fl_plan_free() clears it
     if (settings->style)
         return add_styles(plan, region, error);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "no style for region “%s”; use ‘style’ NAME, or style = NAME in a config", r->name);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE,
+                   "no style for region “%s”; use ‘style’ NAME, or style = NAME in a config",
+                   r->name);
 }
 
 /* All regions have half the size or none, including those left out this time, since they are
@@ -174,17 +175,14 @@ static bool check_is_png(const char *pattern, GError **error)
 static bool check_regions_file(const FlPlan *plan, const char *pattern, GError **error)
 {
     const char *brace = pattern ? strchr(pattern, '{') : NULL;
-    if (brace && strchr(brace, '}') && !strstr(pattern, "{region}")) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%.*s” is not understood; expected %s",
-                    pattern, (int)(strchr(brace, '}') + 1 - brace), brace, "{region}");
-        return false;
-    }
+    if (brace && strchr(brace, '}') && !strstr(pattern, "{region}"))
+        return fl_fail(error, FL_ERROR_USAGE, "%s: “%.*s” is not understood; expected %s", pattern,
+                       (int)(strchr(brace, '}') + 1 - brace), brace, "{region}");
     if (!pattern || plan->n_painted < 2 || strstr(pattern, "{region}"))
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "%s: one file for %d regions; expected {region} in the name", pattern,
-                plan->n_painted);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE,
+                   "%s: one file for %d regions; expected {region} in the name", pattern,
+                   plan->n_painted);
 }
 
 bool fl_plan_find_regions(FlPlan *plan, GError **error)

@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "job/plan.h"
 
 #include "base/page.h"
@@ -73,11 +74,11 @@ static bool check_export(const FlPlan *plan, const FlRegionPlan *painted, GError
 {
     if (!plan->options.ebsynth || plan->options.merge || painted->engine->guide_pairs)
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "region %s: the engine %s has no guides for ‘ebsynth’; use another, or ‘region’ to "
-                "leave it out",
-                painted->name, painted->engine->name);
-    return false;
+    return fl_fail(
+        error, FL_ERROR_USAGE,
+        "region %s: the engine %s has no guides for ‘ebsynth’; use another, or ‘region’ to "
+        "leave it out",
+        painted->name, painted->engine->name);
 }
 
 /* Two layers are mixed while a style replaces another; cut out, they have other shapes. */
@@ -87,10 +88,9 @@ static bool check_keyed(const FlRegionPlan *painted, GError **error)
     if (!painted->styles || !engine->reach ||
         engine->reach(painted->style, &painted->settings.params) <= 0)
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "region %s: the paint of %s is cut out, and so it can be no keyed style",
-                painted->name, painted->style->path);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE,
+                   "region %s: the paint of %s is cut out, and so it can be no keyed style",
+                   painted->name, painted->style->path);
 }
 
 /* Lists the files of a region's style before they are read, so that a broken style can be watched.
@@ -109,10 +109,9 @@ static bool choose_fluid(const FlPlan *plan, FlRegionPlan *painted, GError **err
     FlRegionSettings *settings = &painted->settings;
     const bool elsewhere = settings->motion == FL_MOTION_MASKS || plan->options.flow;
     if (elsewhere && settings->fluid > FL_FLUID_NONE) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "region %s: ‘fluid’ and ‘%s’ both say how paint moves; use one of them",
-                    painted->name, plan->options.flow ? "flow" : "motion masks");
-        return false;
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "region %s: ‘fluid’ and ‘%s’ both say how paint moves; use one of them",
+                       painted->name, plan->options.flow ? "flow" : "motion masks");
     }
     if (settings->fluid == FL_FLUID_STYLE)
         settings->fluid = elsewhere ? FL_FLUID_NONE : MAX(painted->style->fluid, FL_FLUID_NONE);

@@ -109,8 +109,7 @@ static bool tell_masks(Pass *pass, int frame, GError **error)
                                  .remaining_s = -1};
     if (o->progress(&progress, o->data))
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted before the first frame");
-    return false;
+    return fl_fail(error, FL_ERROR_INTERRUPTED, "interrupted before the first frame");
 }
 
 static bool each_frame(Pass *pass, GError **error)

@@ -1,5 +1,6 @@
 #include "job/resume.h"
 
+#include "base/error.h"
 #include "base/exists.h"
 #include "drawing/open_drawing.h"
 #include "io/lock.h"
@@ -131,18 +132,24 @@ static bool check_files(const FlResume *resume, const FlPlan *plan, GError **err
     return true;
 }
 
+/* Tells a line, which is freed. */
+static void note(const FlPlan *plan, char *line)
+{
+    if (plan->options.note)
+        plan->options.note(line, plan->options.data);
+    g_free(line);
+}
+
 static void note_resume(const FlResume *resume, const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
     const int n = resume->first - plan->first;
-    g_autofree char *line = g_strdup_printf(
-        "resuming an earlier run, which painted %d of %d frames", n, plan->end - plan->first);
     g_autofree char *lack = g_strdup_printf(
         "report and statistics lack the %d frames that an earlier run has painted; use ‘overwrite’ "
         "to paint them again",
         n);
-    if (o->note)
-        o->note(line, o->data);
+    note(plan, g_strdup_printf("resuming an earlier run, which painted %d of %d frames", n,
+                               plan->end - plan->first));
     if (o->warning && n > 0 && (o->report || o->stats))
         o->warning(lack, o->data);
 }
@@ -170,25 +177,15 @@ bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GErro
     return true;
 }
 
-/* A film without its frames is one file, which cannot be continued. */
-static bool check_film(const FlPlan *plan, GError **error)
-{
-    if (plan->options.resume) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: a film cannot be resumed without its frames; leave out ‘no-frames’",
-                    plan->output);
-        return false;
-    }
-    return true;
-}
-
 bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
 {
     const bool one_file = plan->format->film && !plan->parts_only;
     *resume = (FlResume){.keep_files = plan->options.overwrite == FL_OVERWRITE_KEEP,
                          .forgets = plan->options.watch};
-    if (one_file && !check_film(plan, error))
-        return false;
+    if (one_file && plan->options.resume)
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "%s: a film cannot be resumed without its frames; leave out ‘no-frames’",
+                       plan->output);
     g_autoptr(FlFacts) facts = fl_plan_facts(plan);
     resume->path = one_file ? NULL : hidden_file(plan, false, "state");
     if (resume->path && !find_record(resume, plan, facts, error))
@@ -249,10 +246,9 @@ static bool check_drawing(const FlPlan *plan, int frame, GError **error)
 {
     const char *path = fl_drawing_file(plan->drawing, frame);
     const FlDigest before = fl_inputs_digest(plan->inputs, path), now = fl_file_digest(path);
-    if (before.a == now.a && before.b == now.b)
+    if (fl_digest_is_same(before, now))
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "%s: has changed since the render began", path);
-    return false;
+    return fl_fail(error, FL_ERROR_CHANGED, "%s: has changed since the render began", path);
 }
 
 bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GError **error)
@@ -312,14 +308,19 @@ void fl_resume_clear(FlResume *resume)
 
 /* ---- finished renders ------------------------------------------------------------------------ */
 
+/* True if a render writes more than frames and a film. */
+static bool writes_more(const FlRenderOptions *o)
+{
+    return o->layers || o->paint || o->stats || o->report || o->dump || o->ebsynth;
+}
+
 /* The store of the plan, if its render can be known as finished. */
 static FlStore *store_for(const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
-    const bool more =
-        o->layers || o->paint || o->stats || o->report || o->dump || o->ebsynth || o->dry_run;
     const bool piped = o->config && !g_file_test(o->config, G_FILE_TEST_IS_REGULAR);
-    return more || piped ? NULL : plan->cache; // a pipe cannot be read again
+    return writes_more(o) || o->dry_run || piped ? NULL
+                                                 : plan->cache; // a pipe cannot be read again
 }
 
 /* The name of the record: all renders of these frames, or this film, have the same. */
@@ -382,7 +383,7 @@ static bool keeps_all(const FlPlan *plan, const FlSequence *sequence)
 {
     const FlRenderOptions *o = &plan->options;
     if (o->overwrite != FL_OVERWRITE_KEEP || o->verify || film_of(plan) || plan->parts_only ||
-        o->layers || o->paint || o->stats || o->report || o->dump || o->ebsynth)
+        writes_more(o))
         return false;
     // frames that are found to be left out would move the bounds of parts
     if (plan->n_parts > 1 && o->missing > FL_MISSING_ERROR)
@@ -414,7 +415,7 @@ FlFinished fl_resume_look(FlPlan *plan, const FlSequence *sequence)
     FlStore *store = store_for(plan);
     g_autoptr(GBytes) bytes = store ? fl_store_get(store, FL_KEPT_RECORD, name_of(plan)) : NULL;
     g_autoptr(FlRecord) record = bytes ? fl_record_parse(bytes) : NULL;
-    if (!record || record->request.a != plan->request.a || record->request.b != plan->request.b ||
+    if (!record || !fl_digest_is_same(record->request, plan->request) ||
         !same_facts(record->found, found_now(record->found)) ||
         !same_facts(record->inputs, inputs_now(record->inputs)))
         return FL_FINISHED_NOTHING;
@@ -459,13 +460,6 @@ typedef struct Verify {
     const FlPlan *plan;
     int n, n_wrong;
 } Verify;
-
-static void note(const FlPlan *plan, char *line)
-{
-    if (plan->options.note)
-        plan->options.note(line, plan->options.data);
-    g_free(line);
-}
 
 static void verify_file(Verify *verify, const char *file, FlDigest made_from)
 {

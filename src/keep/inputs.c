@@ -1,5 +1,6 @@
 #include "keep/inputs.h"
 
+#include "base/error.h"
 #include "io/pattern.h"
 #include "io/picture_file.h"
 #include <fcntl.h>
@@ -264,7 +265,6 @@ bool fl_inputs_may_write(FlInputs *inputs, const FlDrawing *drawing, char *outpu
     g_autofree char *key = inode_key(&status);
     if (!g_hash_table_contains(inputs->by_inode, key))
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "%s: is read by this render; expected another name for what it writes", path);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE,
+                   "%s: is read by this render; expected another name for what it writes", path);
 }

@@ -1,6 +1,7 @@
 #include "keep/sealed.h"
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/file.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -34,10 +35,8 @@ bool fl_sealed_read_key(GError **error)
         return true;
     }
     g_free(data);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "FLUIDY_CACHE_KEY: %s; expected a file of 1 to %d bytes",
-                read ? path : problem->message, LONGEST_KEY);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE, "FLUIDY_CACHE_KEY: %s; expected a file of 1 to %d bytes",
+                   read ? path : problem->message, LONGEST_KEY);
 }
 
 static void make_mac(const FlSpan *parts, int n, uint8_t mac[MAC_BYTES])

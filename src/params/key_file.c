@@ -1,5 +1,6 @@
 #include "params/key_file.h"
 
+#include "base/error.h"
 #include "base/file.h"
 #include <string.h>
 
@@ -25,11 +26,8 @@ static char *load(const char *path, const FlKeyReader *reader, GError **error)
 static bool read_section(const FlKeyReader *reader, char *text, int line, GError **error)
 {
     char *end = strchr(text, ']');
-    if (!end || end[1] != '\0') {
-        g_set_error(error, FL_ERROR, (int)reader->mistake, "“%s” is not a section: “]” must end it",
-                    text);
-        return false;
-    }
+    if (!end || end[1] != '\0')
+        return fl_fail(error, reader->mistake, "“%s” is not a section: “]” must end it", text);
     *end = '\0';
     return reader->section(reader->data, g_strstrip(text + 1), line, error);
 }
@@ -37,11 +35,9 @@ static bool read_section(const FlKeyReader *reader, char *text, int line, GError
 static bool read_entry(const FlKeyReader *reader, char *text, int line, GError **error)
 {
     char *equals = strchr(text, '=');
-    if (!equals || equals == text) {
-        g_set_error(error, FL_ERROR, (int)reader->mistake,
-                    "“%.40s” is neither “[section]” nor “key = value”", text);
-        return false;
-    }
+    if (!equals || equals == text)
+        return fl_fail(error, reader->mistake, "“%.40s” is neither “[section]” nor “key = value”",
+                       text);
     *equals = '\0';
     return reader->entry(reader->data, g_strstrip(text), g_strstrip(equals + 1), line, error);
 }

@@ -1,5 +1,6 @@
 #include "params/params.h"
 
+#include "base/error.h"
 #include "base/suggest.h"
 #include "params/text.h"
 
@@ -150,15 +151,12 @@ static bool read_value(const char *name, const char *text, int *index, Value *va
     *index = fl_param_find(name);
     if (*index < 0) {
         g_autofree char *hint = fl_did_you_mean(name, param_names());
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "unknown parameter “%s”%s", name, hint);
-        return false;
+        return fl_fail(error, FL_ERROR_USAGE, "unknown parameter “%s”%s", name, hint);
     }
     const FlParamInfo *info = fl_param_info(*index);
     if (!parse(info, text, value)) {
         g_autofree char *expected = expectation(info);
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s” is not %s", info->name, text,
-                    expected);
-        return false;
+        return fl_fail(error, FL_ERROR_USAGE, "%s: “%s” is not %s", info->name, text, expected);
     }
     return true;
 }
@@ -285,9 +283,8 @@ bool fl_params_preset(FlParams *params, const char *word, GError **error)
         }
     g_autofree char *hint = fl_did_you_mean(preset, fl_preset_names);
     g_autofree char *presets = g_strjoinv(", ", (char **)fl_preset_names);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "unknown preset “%s”; the presets are %s%s",
-                preset, presets, hint);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE, "unknown preset “%s”; the presets are %s%s", preset,
+                   presets, hint);
 }
 
 FlParams *fl_params_new(void)

@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "params/region_settings.h"
 
 #include "base/suggest.h"
@@ -215,8 +216,7 @@ static bool set_plain(FlRegionSettings *settings, const char *key, const char *v
         return false;
     }
     g_autofree char *hint = fl_did_you_mean(key, fl_region_settings_keys());
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "unknown key “%s”%s", key, hint);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE, "unknown key “%s”%s", key, hint);
 }
 
 /* A folder may end as a key does. */
@@ -238,9 +238,8 @@ static bool set_keys(FlRegionSettings *settings, FlKeys *keys, const char *folde
         if (option->type == FL_OPTION_STYLE)
             replace_string(&key->value, g_strdup(settings->style));
         else if (isnan(key->amount = amount_of(settings, option))) {
-            g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                        "%s: “%s” cannot be keyed; expected a number", option->name, key->value);
-            return false;
+            return fl_fail(error, FL_ERROR_USAGE, "%s: “%s” cannot be keyed; expected a number",
+                           option->name, key->value);
         }
     }
     return true;
@@ -249,13 +248,11 @@ static bool set_keys(FlRegionSettings *settings, FlKeys *keys, const char *folde
 static bool set_keyed(FlRegionSettings *settings, const FlOption *option, const char *value,
                       const char *folder, GError **error)
 {
-    if (!fl_option_can_be_keyed(option)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: “%s” has keys, but this option is the same in all frames; "
-                    "fluidy-svg.conf(5) lists those that can be keyed",
-                    option->name, value);
-        return false;
-    }
+    if (!fl_option_can_be_keyed(option))
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "%s: “%s” has keys, but this option is the same in all frames; "
+                       "fluidy-svg.conf(5) lists those that can be keyed",
+                       option->name, value);
     g_autoptr(FlKeys) keys = fl_keys_read(option, option->type == FL_OPTION_STYLE, value, error);
     if (!keys)
         g_prefix_error(error, "%s: ", option->name);

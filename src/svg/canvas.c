@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "svg/svg_frame.h"
 
 /* Reads a number at *text, after `sign` unless that is 0, and moves *text behind the number. */
@@ -23,7 +24,6 @@ bool fl_canvas_parse(const char *text, FlCanvas *canvas, GError **error)
         size && (*at == '\0' || (part(&at, '+', &canvas->x) && part(&at, '+', &canvas->y)));
     if (corner && *at == '\0')
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "canvas “%s”: expected WxH or WxH+X+Y, such as %s",
-                text, "1000x800");
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE, "canvas “%s”: expected WxH or WxH+X+Y, such as %s", text,
+                   "1000x800");
 }

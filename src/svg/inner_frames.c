@@ -1,5 +1,6 @@
 #include "svg/inner_frames.h"
 
+#include "base/error.h"
 #include "svg/cascade.h"
 #include "svg/css_value.h"
 #include "svg/layer_frames.h"
@@ -97,11 +98,9 @@ bool fl_select_page(xmlDoc *doc, int page, const char *path, GError **error)
     g_auto(GStrv) fbf = fbf_frames(doc, &use);
     g_autoptr(GPtrArray) pages = inkscape_pages(doc);
     const int n = fbf ? (int)g_strv_length(fbf) : (int)pages->len;
-    if (page < 1 || page > n) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no page for frame %d; there are %d", path,
-                    page, n);
-        return false;
-    }
+    if (page < 1 || page > n)
+        return fl_fail(error, FL_ERROR_INPUT, "%s: no page for frame %d; there are %d", path, page,
+                       n);
     if (!fbf) {
         show_page(xmlDocGetRootElement(doc), pages->pdata[page - 1]);
         return true;

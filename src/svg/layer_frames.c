@@ -1,5 +1,6 @@
 #include "svg/layer_frames.h"
 
+#include "base/error.h"
 #include <string.h>
 
 static bool is_marked(const xmlNode *node)
@@ -92,11 +93,9 @@ static void put_away(xmlNode *layer, xmlNode *definitions)
 bool fl_layer_frames_select(xmlDoc *doc, int frame, const char *path, GError **error)
 {
     g_autoptr(GPtrArray) frames = frames_of(doc);
-    if (frame < 1 || frame > (int)frames->len) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no layer for frame %d; there are %u",
-                    path, frame, frames->len);
-        return false;
-    }
+    if (frame < 1 || frame > (int)frames->len)
+        return fl_fail(error, FL_ERROR_INPUT, "%s: no layer for frame %d; there are %u", path,
+                       frame, frames->len);
     xmlNode *root = xmlDocGetRootElement(doc), *shown = frames->pdata[frame - 1];
     xmlNode *definitions =
         has_clones(root) ? xmlNewChild(root, root->ns, (const xmlChar *)"defs", NULL) : NULL;

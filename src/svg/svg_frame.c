@@ -1,5 +1,6 @@
 #include "svg/svg_frame.h"
 
+#include "base/error.h"
 #include "svg/branch.h"
 #include "svg/cascade.h"
 #include "svg/filter_background.h"
@@ -130,14 +131,13 @@ bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error
     const xmlNode *root = xmlDocGetRootElement(svg->doc);
     g_autofree char *w_said = fl_property(root, "width"), *h_said = fl_property(root, "height");
     const bool negative = (w_said && *w_said == '-') || (h_said && *h_said == '-');
-    g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                "%s: %s; set one with ‘canvas’, such as 1920x1080, or find one with ‘register’",
-                svg->path,
-                negative ? "the size of the drawing is negative"
-                : (has_width && w.length == 0) || (has_height && h.length == 0)
-                    ? "the size of the drawing is 0"
-                    : "the drawing has no size and no viewBox");
-    return false;
+    return fl_fail(error, FL_ERROR_INPUT,
+                   "%s: %s; set one with ‘canvas’, such as 1920x1080, or find one with ‘register’",
+                   svg->path,
+                   negative ? "the size of the drawing is negative"
+                   : (has_width && w.length == 0) || (has_height && h.length == 0)
+                       ? "the size of the drawing is 0"
+                       : "the drawing has no size and no viewBox");
 }
 
 int fl_svg_nameless_groups(const FlSvg *svg)

@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/rng.h"
 #include "worker/hand_line.h"
 #include "worker/raster.h"
@@ -130,11 +131,9 @@ static bool draw_step(const Stage *stage, const FlDrawStep *step, cairo_surface_
     const FlLeaves *leaves = fl_svg_leaves(stage->svg);
     const GArray *list = step->leaf >= 0 ? leaves->leaf : leaves->unit;
     const guint index = (guint)(step->leaf >= 0 ? step->leaf : -1 - step->leaf);
-    if (index >= list->len) {
-        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "%s: changed while it was being painted",
-                    stage->frame->file);
-        return false;
-    }
+    if (index >= list->len)
+        return fl_fail(error, FL_ERROR_CHANGED, "%s: changed while it was being painted",
+                       stage->frame->file);
     const FlLeaf *leaf = step->leaf >= 0 ? &g_array_index(list, FlLeaf, index)
                                          : &g_array_index(list, FlGroupUnit, index).leaf;
     const FlRect box = step_box(stage, step);

@@ -1,5 +1,6 @@
 #include "worker/messages.h"
 
+#include "base/error.h"
 #include "base/limits.h"
 #include <math.h>
 #include <string.h>
@@ -155,9 +156,7 @@ void fl_answer_pack_error(GByteArray *out, const GError *problem)
 
 bool fl_answer_set_damaged(const char *file, GError **error)
 {
-    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: the process that read it answered nonsense",
-                file);
-    return false;
+    return fl_fail(error, FL_ERROR_INPUT, "%s: the process that read it answered nonsense", file);
 }
 
 bool fl_answer_begin(FlReader *reader, const char *file, GError **error)

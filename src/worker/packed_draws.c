@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "worker/messages.h"
 
 #include "base/alloc.h"
@@ -51,10 +52,8 @@ static bool pack(const FlDraw *draw, GByteArray *to, GError **error)
     if (!data)
         return false;
     header.bytes = fl_compress(parts, N_PLANES, data, capacity);
-    if (header.bytes == 0 || header.bytes > INT_MAX - to->len - sizeof header) {
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to pack a drawing");
-        return false;
-    }
+    if (header.bytes == 0 || header.bytes > INT_MAX - to->len - sizeof header)
+        return fl_fail(error, FL_ERROR_NO_MEMORY, "not enough memory to pack a drawing");
     g_byte_array_append(to, (const uint8_t *)&header, sizeof header);
     g_byte_array_append(to, data, (guint)header.bytes);
     return true;

@@ -1,5 +1,6 @@
 #include "worker/verbs.h"
 
+#include "base/error.h"
 #include "svg/geometry.h"
 #include "worker/survey_frame.h"
 #include <string.h>
@@ -102,11 +103,8 @@ static bool outline(const FlRequest *r, GByteArray *out, GError **error)
     g_autoptr(FlSvg) svg = fl_svg_read(r->file, r->number, &r->svg, NULL, error);
     g_autoptr(FlOutlines) outlines = svg ? fl_svg_outlines(svg, r->page) : NULL;
     g_autofree uint8_t *data = outlines ? fl_outlines_pack(outlines, &bytes) : NULL;
-    if (bytes > INT_MAX) {
-        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT, "%s: its outlines have more than 2 GiB",
-                    r->file);
-        return false;
-    }
+    if (bytes > INT_MAX)
+        return fl_fail(error, FL_ERROR_LIMIT, "%s: its outlines have more than 2 GiB", r->file);
     fl_put(out, data, bytes);
     return data != NULL;
 }

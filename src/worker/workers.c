@@ -1,5 +1,6 @@
 #include "worker/workers.h"
 
+#include "base/error.h"
 #include "base/limits.h"
 #include "base/sandbox.h"
 #include "base/schedule.h"
@@ -358,11 +359,9 @@ static bool try_once(FlWorkers *workers, const FlRequest *request, const GByteAr
     size_t n = 0;
     Worker *worker = acquire(workers->id);
     *killed = false;
-    if (!worker) {
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                    "%s: the processes that read and draw were killed", request->file);
-        return false;
-    }
+    if (!worker)
+        return fl_fail(error, FL_ERROR_NO_MEMORY,
+                       "%s: the processes that read and draw were killed", request->file);
     const Outcome end = exchange(worker, workers, bytes, wait);
     uint8_t *data = end.answered ? fl_memory_file_get(worker->process.memory, &n) : NULL;
     *killed = !end.answered && !end.late && !end.stopped && WIFSIGNALED(end.status) &&
