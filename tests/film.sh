@@ -31,11 +31,12 @@ flow() {
     done
 }
 
-# paint FOLDER ARGUMENT...: paints the film into the folder; the status is the program's.
+# paint FOLDER ARGUMENT...: paints the film, or that of $film, into the folder; the status is the
+# program's.
 paint() {
     local to=$1
     shift
-    timeout 120 "$program" film -s "$style" -o "$to/w_%04d.png" --progress none "$@" >out 2>err
+    timeout 120 "$program" "${film:-film}" -s "$style" -o "$to/w_%04d.png" --progress none "$@" >out 2>err
 }
 
 # says TEXT: standard error is one line, which has the text.

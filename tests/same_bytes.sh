@@ -50,10 +50,20 @@ ink=(--style "$(dirname "$style")/styles/13")
 paint ink -j 1 "${ink[@]}" && paint ink_many -j 4 "${ink[@]}" && same ink_many ink &&
     FLUIDY_CPU_MASK=0 paint ink_plain "${ink[@]}" && same ink_plain ink && ! same ink one
 result $? 'ink is moved alike by four threads and without the larger instruction sets'
-paint smoke -j 1 "${ink[@]}" --fluid smoke &&
-    paint smoke_many -j 4 "${ink[@]}" --fluid smoke && same smoke_many smoke &&
-    FLUIDY_CPU_MASK=0 paint smoke_plain "${ink[@]}" --fluid smoke && same smoke_plain smoke
+mkdir plume # a mound that swells and bends: no single map moves it
+for i in 1 2 3 4 5 6; do
+    echo "<svg xmlns='http://www.w3.org/2000/svg' width='56' height='56'>" \
+        "<path d='M6 54Q6 $((44 - 5 * i)) $((20 + 3 * i)) $((40 - 5 * i))T50 54Z'/></svg>" >plume/w_000$i.svg
+done
+smoke=("${ink[@]}" --fluid smoke)
+film=plume
+paint dry "${ink[@]}" && paint smoke -j 1 "${smoke[@]}" && ! same smoke dry &&
+    paint smoke_many -j 4 "${smoke[@]}" && same smoke_many smoke &&
+    FLUIDY_CPU_MASK=0 paint smoke_plain "${smoke[@]}" && same smoke_plain smoke
 result $? 'a fluid flows alike on any number of threads'
+cp -r "${ink[1]}" fluid && sed -i '/^name =/a fluid = smoke' fluid/style.ini && paint said --style fluid && same said smoke
+result $? 'and a style may ask for it'
+unset film
 batik=(--style "$(dirname "$style")/styles/12")
 paint batik "${batik[@]}"
 fine=("${batik[@]}" --refine 2)

@@ -158,9 +158,53 @@ static void test_rest(void)
                               motion[2 * (y * SIDE + x) + 1] == 0);
 }
 
+/* A disk at the left that moves for ten frames, and a second one that does so from frame 30 on. */
+static double stopping(double x, double y, int frame)
+{
+    return MAX(30 - hypot(x - 60 - 2 * MIN(frame, 10), y - 60 - MIN(frame, 10)),
+               20 - hypot(x - 160, y - 150 - MAX(frame - 30, 0)));
+}
+
+/* The same, but the second one moves all the time. */
+static double stopping_beside(double x, double y, int frame)
+{
+    return MAX(stopping(x, y, MIN(frame, 30)), 15 - hypot(x - 170, y - 190 + 3 * frame));
+}
+
+/* The largest difference of the motion in the first disk from (u, v). */
+static float stir_of(double u, double v)
+{
+    float most = 0;
+    for (int y = 50; y < 90; y++)
+        for (int x = 60; x < 100; x++)
+            most = MAX(most, hypotf(motion[2 * (y * SIDE + x)] - (float)u,
+                                    motion[2 * (y * SIDE + x) + 1] - (float)v));
+    return most;
+}
+
+static void test_stop(void)
+{
+    static const Shape shapes[] = {stopping, stopping_beside};
+    for (int k = 0; k < 2; k++) {
+        g_autoptr(FlFluid) fluid = fluid_of("smoke");
+        for (int frame = 1; frame <= 31; frame++) {
+            flow(fluid, shapes[k], frame - 1, frame);
+            if (frame == 10)
+                g_assert_cmpfloat(stir_of(2, 1), >, .5);
+        }
+        g_assert_cmpfloat(stir_of(0, 0), <, .1);
+    }
+}
+
 static double leaping(double x, double y, int frame)
 {
     return 12 - hypot(x - (frame % 2 ? 40 : 160), y - 100);
+}
+
+/* It lands where it was in part. */
+static double hopping(double x, double y, int frame)
+{
+    return 12 - hypot(x - (frame % 2 ? 90 : 110), y - 100);
 }
 
 static double blinking(double x, double y, int frame)
@@ -217,10 +261,12 @@ static void test_any(void)
 
 static void test_leap(void)
 {
-    g_autoptr(FlFluid) fluid = fluid_of("plain");
+    g_autoptr(FlFluid) far = fluid_of("plain"), near = fluid_of("plain");
     for (int frame = 1; frame < 4; frame++) {
-        flow(fluid, leaping, frame - 1, frame);
+        flow(far, leaping, frame - 1, frame);
         g_assert_true(isnan(motion[2 * (100 * SIDE + (frame % 2 ? 40 : 160))]));
+        flow(near, hopping, frame - 1, frame);
+        g_assert_true(isnan(motion[2 * (100 * SIDE + (frame % 2 ? 90 : 110))]));
     }
 }
 
@@ -248,6 +294,7 @@ int main(int argc, char **argv)
     g_test_add_func("/fluid/held", test_held);
     g_test_add_func("/fluid/growth", test_growth);
     g_test_add_func("/fluid/rest", test_rest);
+    g_test_add_func("/fluid/stop", test_stop);
     g_test_add_func("/fluid/any", test_any);
     g_test_add_func("/fluid/leap", test_leap);
     g_test_add_func("/fluid/anew", test_anew);

@@ -243,6 +243,7 @@ static void test_dries(void)
         last = now;
     }
     g_assert_cmpfloat(last, ==, 0);
+    g_assert_cmpint(scene->sheet.wet.width, ==, 0);
     scene_free(scene);
 }
 

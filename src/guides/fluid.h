@@ -41,7 +41,7 @@ void fl_fluid_begin(FlFluid *fluid);
  * normal velocity at the contour is the contour's own, and what a shape gains in area comes in
  * where its contour rests, or everywhere. After an outline without a shape the fluid starts anew.
  * A frame with the outline of the frame before leaves the fluid where it is and takes a fifth of
- * its velocity.
+ * its velocity and of its lift.
  */
 void fl_fluid_step(FlFluid *fluid, const FlOutline *before, const FlOutline *now);
 

@@ -11,6 +11,7 @@
 #include "guides/pressure.h"
 #include <string.h>
 
+#define FL_FLUID_NEAR 3    // from the contour, up to which it has a velocity
 #define FL_FLUID_FASTEST 6 // beyond the motion of its part
 
 /** A part of the region in the frame in hand. */

@@ -9,7 +9,6 @@
 #define MARGIN 4    // cells around the part
 #define FAR 40      // the largest distance
 #define DEEP 7      // from the contour; beyond that the distance may be coarse
-#define NEAR 3      // from the contour, up to which it has a velocity
 #define FIT_STEPS 15
 #define LEAST_CONTOUR 6 // cells of contour of a part that flows
 #define LEAP .05f       // of the page's larger side
@@ -272,7 +271,7 @@ static void find_contour(FlFluid *f)
     for (int c = 0; c < f->n; c++) {
         const FlFluidPart *part = fl_fluid_part(f, c);
         f->speed[c] = f->nx[c] = f->ny[c] = f->length[c] = 0;
-        if (!part || fabsf(f->distance[c]) > NEAR)
+        if (!part || fabsf(f->distance[c]) > FL_FLUID_NEAR)
             continue;
         const float dx = f->distance[c + 1] - f->distance[c - 1];
         const float dy = f->distance[c + f->stride] - f->distance[c - f->stride];

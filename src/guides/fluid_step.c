@@ -9,10 +9,10 @@
 #include "guides/fluid_data.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include <math.h>
 #include <string.h>
 
-#define NEAR 3           // from the contour, up to which it has a velocity
 #define RINGS 12         // cells by which a velocity is continued outwards
 #define RESTS .12f       // slower than this a contour rests
 #define BAND 5           // below the contour, in which buoyancy sets in
@@ -160,7 +160,7 @@ static void carry(FlFluid *f, Faces faces)
         FlFluidPart *part = part_beside(f, &faces, c);
         float way[2];
         faces.next[c] = 0;
-        if (f->distance[c] < -NEAR)
+        if (f->distance[c] < -FL_FLUID_NEAR)
             continue;
         way_at(f, x, y, way);
         faces.next[c] =
@@ -208,8 +208,8 @@ static void add_forces(FlFluid *f)
         const float dy = .5f * (strength[c + s] - strength[c - s]);
         const float twist =
             CONFINEMENT * dials->swirl * curl[c] / (sqrtf(dx * dx + dy * dy) + 1e-4f);
-        const float t = CLAMP(f->distance[c] / BAND, 0, 1);
-        const float lift = dials->buoyancy * (float)part->pace / BAND * t * t * (3 - 2 * t);
+        const float lift =
+            dials->buoyancy * (float)part->pace / BAND * fl_smooth(f->distance[c] / BAND);
         along[0][c] = twist * dy + lift * dials->up[0];
         along[1][c] = -twist * dx + lift * dials->up[1];
     }
@@ -444,7 +444,7 @@ void fl_fluid_step(FlFluid *f, const FlOutline *before, const FlOutline *now)
 {
     if (before == now) {
         for (int c = 0; c < f->n; c++)
-            f->u[c] *= SLOWS, f->v[c] *= SLOWS;
+            f->u[c] *= SLOWS, f->v[c] *= SLOWS, f->pace[c] *= SLOWS, f->rise[c] *= SLOWS;
         return;
     }
     if (!f->follows || before->empty) {
