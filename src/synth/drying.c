@@ -1,5 +1,6 @@
 #include "synth/drying.h"
 
+#include "base/curves.h"
 #include <math.h>
 
 #define BAND 18.0f      // units: how deep the contour's speed is felt
@@ -23,8 +24,7 @@
 
 static float smoothstep(float low, float high, float v)
 {
-    const float t = CLAMP((v - low) / (high - low), 0, 1);
-    return t * t * (3 - 2 * t);
+    return fl_smooth((v - low) / (high - low));
 }
 
 /* The motion of contour and paint at a pixel. */

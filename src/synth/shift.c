@@ -1,5 +1,6 @@
 #include "synth/shift.h"
 
+#include "base/curves.h"
 #include <math.h>
 
 /**
@@ -96,12 +97,7 @@ void fl_nnf_shift(FlNnf *nnf, const FlExemplar *exemplar, const FlTargetMotion *
 
 static float weight_of(float apart, const FlTemporalTrust *trust)
 {
-    if (apart <= trust->lower_px)
-        return 1;
-    if (apart >= trust->upper_px)
-        return 0;
-    const float v = (apart - trust->lower_px) / (trust->upper_px - trust->lower_px);
-    return 1 - v * v * (3 - 2 * v);
+    return 1 - fl_smooth((apart - trust->lower_px) / (trust->upper_px - trust->lower_px));
 }
 
 float fl_temporal_weight(const FlExemplar *exemplar, FlMatch shifted, float target_distance_px,

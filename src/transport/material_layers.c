@@ -1,6 +1,7 @@
 #include "transport/material_layers.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "transport/revealed.h"
 #include <math.h>
 
@@ -20,7 +21,7 @@ void fl_material_layers_clear(FlMaterialLayers *layers)
 void fl_material_layers_weights(const FlMaterialLayers *layers, size_t p, float *old, float *fresh)
 {
     const float t = layers->share.shift ? layers->share.shift[2 * p + 1] : 0;
-    const float s = t * t * (3 - 2 * t), length = sqrtf(s * s + (1 - s) * (1 - s));
+    const float s = fl_smooth(t), length = sqrtf(s * s + (1 - s) * (1 - s));
     *old = (1 - s) / length, *fresh = s / length;
 }
 

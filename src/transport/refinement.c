@@ -1,6 +1,7 @@
 #include "transport/refinement.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "base/state_bytes.h"
 #include "transport/solve.h"
 #include <assert.h>
@@ -87,9 +88,8 @@ static void read_pixel(const Frame *frame, int x, int y, const float *velocity)
     float at[2];
     fl_region_plane_to_frame(&frame->plane, x, y, at);
     const float depth = fl_region_plane_depth(&frame->plane, frame->guides, r, at[0], at[1]);
-    const float t = fminf(fmaxf(depth / style->taper_px, 0), 1);
     frame->coverage[p] = fminf(fmaxf(depth + 0.5f, 0), 1);
-    frame->taper[p] = t * t * (3 - 2 * t);
+    frame->taper[p] = fl_smooth(depth / style->taper_px);
     if (frame->density)
         frame->density[p] =
             depth > 0 ? fl_ring_density(depth / style->ring_px + 0.25f, style->ring_px) : 1;

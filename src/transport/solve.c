@@ -1,6 +1,7 @@
 #include "transport/solve.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "base/rng.h"
 #include <math.h>
 #include <string.h>
@@ -255,7 +256,7 @@ static bool run_stage(Solver *solver, const Stage *stage, int n, Report *report,
     if (!fresh_moments(solver, error))
         return false;
     for (int k = 0; k < n; k++) {
-        const float t = (float)k / (float)n, fall = t * t * (3 - 2 * t);
+        const float fall = fl_smooth((float)k / (float)n);
         const float loss =
             derive(solver, stage->levels, fl_key(problem->key, (uint64_t)++report->done), error);
         if (loss < 0)
