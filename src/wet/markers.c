@@ -4,7 +4,6 @@
 #include "base/alloc.h"
 #include "base/curves.h"
 #include "guides/distance.h"
-#include "params/text.h"
 
 static FlRegionSettings settings_in(const FlPlan *plan, const FlRegionPlan *region, int frame)
 {
@@ -87,32 +86,15 @@ void fl_wet_turn_dials(const FlWet *wet, FlMarker *marker, int frame)
                                  dial * (float)now.stain, (float)wet->plan->options.overrun};
 }
 
-/** The mean colour of the first frame with a region, for those of gradients and pictures. */
-static bool find_mean(const FlWet *wet, int region, uint8_t rgb[3], GError **error)
-{
-    const FlDrawing *drawing = wet->plan->drawing;
-    const int first = fl_drawing_region(drawing, region)->first_frame;
-    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, first, error);
-    for (int k = 0; draws && k < draws->n; k++)
-        if (draws->draw[k].region == region)
-            memcpy(rgb, draws->draw[k].rgb, 3);
-    return draws;
-}
-
 /** The absorbance of a region's colour. */
-static bool find_fill(const FlWet *wet, FlMarker *marker, GError **error)
+static void find_fill(const FlWet *wet, FlMarker *marker)
 {
     const FlRegionSettings *settings = &marker->plan->settings;
-    const int region = marker->plan->region;
-    const char *paint = fl_drawing_region(wet->plan->drawing, region)->paint;
-    uint8_t rgb[3] = {128, 128, 128};
-    if (settings->has_colour)
-        memcpy(rgb, settings->colour, 3);
-    else if (!fl_text_colour(paint, rgb) && !find_mean(wet, region, rgb, error))
-        return false;
+    const uint8_t *rgb = settings->has_colour
+                             ? settings->colour
+                             : fl_drawing_region(wet->plan->drawing, marker->plan->region)->rgb;
     for (int c = 0; c < 3; c++)
         marker->fill[c] = fl_wet_absorbance(rgb[c], wet->paper[c]);
-    return true;
 }
 
 bool fl_wet_make_markers(FlWet *wet, GError **error)
@@ -128,8 +110,7 @@ bool fl_wet_make_markers(FlWet *wet, GError **error)
             return false;
         if (marker->size <= 0.001f)
             continue;
-        if (!find_fill(wet, marker, error))
-            return false;
+        find_fill(wet, marker);
         marker->fronts = g_array_new(FALSE, FALSE, sizeof(FlFrontMark));
         marker->stains = g_array_new(FALSE, FALSE, sizeof(FlStainMark));
         wet->n_markers++;

@@ -63,8 +63,6 @@ static bool find_lowest(const FlWet *wet, int frame, uint16_t *lowest, GError **
 {
     const FlRect page = wet->sheet.page, px = fl_wet_px_of(wet, page);
     const int c = wet->cell;
-    if (c == 1)
-        return fl_surround_lowest(wet->plan->surround, frame, px, lowest, error);
     g_autofree uint16_t *full = fl_alloc_unset(fl_rect_pixels(px), sizeof *full, "regions", error);
     if (!full || !fl_surround_lowest(wet->plan->surround, frame, px, full, error))
         return false;

@@ -24,8 +24,6 @@ bool fl_wet_get_mask(const FlWet *wet, int region, int frame, FlRect rect, uint8
 {
     const FlRect px = fl_wet_px_of(wet, rect);
     const int c = wet->cell;
-    if (c == 1)
-        return fl_mask_store_get(wet->plan->masks, region, frame, rect, mask, error);
     g_autofree uint8_t *full = fl_alloc_unset(fl_rect_pixels(px), 1, "a mask", error);
     if (!full || !fl_mask_store_get(wet->plan->masks, region, frame, px, full, error))
         return false;
