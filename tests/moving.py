@@ -38,7 +38,7 @@ FILMS = {
     "variables": f"<style>@keyframes k {{ to {{ transform: translateX(var(--far)) }} }} svg {{ --far: 55px }} rect {{ animation: k 2s linear }}</style>" + BOX % "",
 }
 
-# Before the page: what runs is stopped at once, for what has ended is forgotten.
+# Runs before the page's own scripts: pauses its animations at once, since the browser forgets those that have ended.
 HOLD = """addEventListener("DOMContentLoaded", () => {
   window.held = document.getAnimations(); for (const a of held) a.pause(); document.documentElement.pauseAnimations(); })"""
 SEEK = """(t) => { for (const a of held) a.currentTime = t * 1000;
@@ -69,7 +69,7 @@ def near_edges(picture):
 
 
 def difference(mine, theirs):
-    """dB away from edges."""
+    """The PSNR of the pixels away from edges, dB."""
     flat = ~(near_edges(mine) | near_edges(theirs))
     error = ((mine - theirs)[flat] ** 2).mean() if flat.any() else 0
     return 10 * numpy.log10(255 ** 2 / max(error, 1e-9))
@@ -102,6 +102,8 @@ def play(browser, program, folder, name, file):
         if found < worst:
             worst, at = found, number
         path.unlink()
+    if not at:
+        return "no frame was drawn"
     return None if worst >= LEAST_DB else f"{worst:.1f} dB in frame {at}"
 
 

@@ -324,7 +324,7 @@ static void check_option(const FlOption *o, GPtrArray *strings)
     if (!is_of_film(o) && plan->finished == FL_FINISHED_ALL)
         g_error("has nothing to do although %s is %s", o->name, value);
     if (plan->format->film || is_of_film(o))
-        return; // another output, which has no record
+        return; // a film has no record, and frames do not depend on these options
     if (is_resumed(&options))
         g_error("resumes although %s is %s", o->name, value);
 }
