@@ -145,6 +145,32 @@ static void the_fill_stays_the_fill(void)
     g_assert_cmpfloat(lower, >, upper); // the light comes from above
 }
 
+/* Means of small shapes, each with a wash of its own: the noise of no wash makes one darker. */
+static void each_of_many_fills_stays(void)
+{
+    g_autoptr(GString) page = g_string_new(NULL);
+    for (int k = 0; k < 8; k++)
+        g_string_append_printf(page, "<circle id='c%d' fill='#%02x80c0' cx='%d' cy='%d' r='42'/>",
+                               k, 30 * k, 50 + 100 * (k % 4), 75 + 150 * (k / 4));
+    const char *const frames[] = {page->str, NULL};
+    const FlWashStyle even = {.wash = 1, .hue = 1};
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
+    g_autofree Tones *tones = lay_frame(drawing, 0, &even);
+    double n[8] = {0}, tone[8] = {0}, play[8] = {0};
+    for (int i = 0; i < W * H; i++) {
+        const int k = i % W / 100 + 4 * (i / W / 150);
+        if (tones->tone[i] > BARE)
+            n[k]++, tone[k] += (double)tones->tone[i], play[k] += tones->play[i];
+    }
+    for (int k = 0; k < 8; k++) {
+        g_test_message("mean of ln %.3f, of play %.3f", tone[k] / n[k],
+                       play[k] / n[k] / FL_PLAY_ONE);
+        g_assert_cmpfloat(fabs(tone[k] / n[k]), <, .03);
+        g_assert_cmpfloat(fabs(play[k] / n[k] / FL_PLAY_ONE), <, .3);
+    }
+}
+
 static double correlation(const float *a, const float *b, int n)
 {
     double sum[5] = {0};
@@ -156,8 +182,7 @@ static double correlation(const float *a, const float *b, int n)
            sqrt((sum[2] - sum[0] * sum[0] / n) * (sum[3] - sum[1] * sum[1] / n));
 }
 
-/* How alike the tones of two frames are at the places of a figure that moves by (x, y) and turns.
- */
+/* The correlation of two frames at the places of a figure that moves by (x, y) and turns. */
 static double likeness(const Tones *first, const Tones *now, double x, double y, double degrees)
 {
     const double c = cos(degrees * G_PI / 180), s = sin(degrees * G_PI / 180);
@@ -178,7 +203,7 @@ static double likeness(const Tones *first, const Tones *now, double x, double y,
 static void it_rides_with_its_figure(void)
 {
     enum { FRAMES = 24 };
-    char *frames[FRAMES + 1] = {NULL};
+    g_auto(GStrv) frames = g_new0(char *, FRAMES + 1);
     for (int t = 0; t < FRAMES; t++)
         frames[t] = g_strdup_printf(BLOB " id='b' transform='translate(%.2f %.2f) rotate(%.2f)'/>",
                                     120 + 7.0 * t, 150 + .7 * t, -.5 * t);
@@ -195,15 +220,13 @@ static void it_rides_with_its_figure(void)
         g_assert_cmpfloat(along, >, .95);
         g_assert_cmpfloat(along, >, page);
     }
-    for (int t = 0; t < FRAMES; t++)
-        g_free(frames[t]);
 }
 
 /* A leg of 200 by 90 px turns about its upper end at (200, 60), below a body of its fill. */
 static void a_limb_carries_its_own(void)
 {
     enum { FRAMES = 8 };
-    char *frames[FRAMES + 1] = {NULL};
+    g_auto(GStrv) frames = g_new0(char *, FRAMES + 1);
     for (int t = 0; t < FRAMES; t++)
         frames[t] =
             g_strdup_printf("<g fill='#5bb7d8'><rect x='20' y='10' width='360' height='50'/>"
@@ -231,14 +254,12 @@ static void a_limb_carries_its_own(void)
     g_test_message("correlation %.3f along the limb, %.3f on the page", correlation(a, b, n),
                    correlation(a, same, n));
     g_assert_cmpfloat(correlation(a, b, n), >, .85); // the light does not turn
-    for (int t = 0; t < FRAMES; t++)
-        g_free(frames[t]);
 }
 
-static void what_stands_still_does_not_change(void)
+static void still_figures_do_not_change(void)
 {
     const char *const still = BLOB " id='still' transform='translate(120 150)'/>";
-    char *frames[4] = {NULL};
+    g_auto(GStrv) frames = g_new0(char *, 4);
     for (int t = 0; t < 3; t++)
         frames[t] = g_strdup_printf("%s<circle id='over' fill='#c03020' cx='%d' cy='150' r='50'/>",
                                     still, 40 + 60 * t);
@@ -257,18 +278,17 @@ static void what_stands_still_does_not_change(void)
         n++;
     }
     g_assert_cmpint(n, >, 5000);
-    for (int t = 0; t < 3; t++)
-        g_free(frames[t]);
 }
 
-/* The mean step of tone over a seam at x, without the slope beside it. */
+/* The mean step of tone over the points on both sides of a seam at x, without the slope beside it.
+ */
 static double step_at(const Tones *tones, int x)
 {
     double sum = 0;
     for (int y = 60; y < 210; y++) {
         const float *row = tones->tone + y * W;
-        sum += (double)fabsf(row[x] - row[x - 1] -
-                             .5f * (row[x + 1] - row[x] + row[x - 1] - row[x - 2]));
+        sum += (double)fabsf(row[x + 4] - row[x - 5] -
+                             .5f * (row[x + 13] - row[x + 4] + row[x - 5] - row[x - 14]));
     }
     return sum / 150;
 }
@@ -417,8 +437,8 @@ static void pigments_mix_to_the_fill(void)
     }
 }
 
-/* What no paint can be becomes what it can: pure green is 5dbc35 or so. */
-static void the_palette_is_what_paint_can_be(void)
+/* A colour beyond all paint becomes the nearest of paint: pure green is 5dbc35 or so. */
+static void fills_beyond_paint_become_paint(void)
 {
     const uint8_t green[3] = {0, 255, 0};
     const FlMixture mixture = fl_mixture_of(green);
@@ -449,9 +469,10 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/wash/the-fill-stays-the-fill", the_fill_stays_the_fill);
+    g_test_add_func("/wash/each-of-many-fills-stays", each_of_many_fills_stays);
     g_test_add_func("/wash/it-rides-with-its-figure", it_rides_with_its_figure);
     g_test_add_func("/wash/a-limb-carries-its-own", a_limb_carries_its_own);
-    g_test_add_func("/wash/what-stands-still-does-not-change", what_stands_still_does_not_change);
+    g_test_add_func("/wash/still-figures-do-not-change", still_figures_do_not_change);
     g_test_add_func("/wash/touching-shapes-of-one-fill-are-one-wash",
                     touching_shapes_of_one_fill_are_one_wash);
     g_test_add_func("/wash/parts-that-move-apart-are-mixed", parts_that_move_apart_are_mixed);
@@ -459,7 +480,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/threads-and-parts-do-not-matter", threads_and_parts_do_not_matter);
     g_test_add_func("/gaps/edges-are-off-by-a-hair", edges_are_off_by_a_hair);
     g_test_add_func("/pigments/they-mix-to-the-fill", pigments_mix_to_the_fill);
-    g_test_add_func("/pigments/the-palette-is-what-paint-can-be", the_palette_is_what_paint_can_be);
+    g_test_add_func("/pigments/fills-beyond-paint-become-paint", fills_beyond_paint_become_paint);
     g_test_add_func("/pigments/the-hue-turns-and-the-light-stays",
                     the_hue_turns_and_the_light_stays);
     return g_test_run();
