@@ -1,14 +1,15 @@
 /*
- * Whether painted regions have the colours of the drawing, and the contrast of the paint.
+ * Checks that painted regions have the colours of the drawing, and the contrast of the paint.
  *
  * usage: colours STYLE FOLDER...
  *
- * Paints every sequence, without a wash and its hues, and looks at each flat, opaque fill of a
- * region in each frame where it is seen, 2 px inside, if that is 64 pixels or more. Printed: how
- * far the median colour is from the fill, in CIEDE2000, where that is more than 3; how many fills
- * are within 3; and the deviation of the logarithm of the density where a fill is deeper than the
- * paint's border, in 2000 pixels or more, as a share of the exemplar's own. Status 1 if a fill is
- * not within 3.
+ * Paints every sequence twice, without a wash and its hues and with them, and looks at each flat,
+ * opaque fill of a region in each frame where it is seen, 2 px inside, if that is 64 pixels or
+ * more; with a wash, 2000. Printed: the distance of the median colour from the fill, in CIEDE2000,
+ * where it is beyond a bound; the number of fills within the bound; and the deviation of the
+ * logarithm of the density where a fill is deeper than the paint's border, in 2000 pixels or more,
+ * as a share of the exemplar's own. Status 1 if a fill without a wash is beyond 3, or more than
+ * half of the fills of a sequence with a wash are beyond 2.5.
  */
 #include "base/alloc.h"
 #include "delta_e.h"
@@ -20,7 +21,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MARGIN_PX = 2, ENOUGH = 64, LARGE = 2000, BOUND = 3 };
+enum { MARGIN_PX = 2, ENOUGH = 64, LARGE = 2000 };
+
+#define BOUND 3.0         // of each fill
+#define BOUND_OF_WASH 2.5 // of half of them, when a wash makes them uneven
 
 static void stop_on(GError *error)
 {
@@ -40,7 +44,7 @@ static int first_like(const FlDrawList *draws, int r)
     return first;
 }
 
-/** Which run is seen at each pixel, or the first like it, counted from 1; 0: none that is flat,
+/** The run that is seen at each pixel, or the first like it, counted from 1; 0: none that is flat,
  * opaque and painted. */
 static uint16_t *find_tops(const FlPlan *plan, const FlDrawList *draws)
 {
@@ -119,11 +123,19 @@ static double contrast_of_style(const FlStyle *style)
 
 typedef struct Tally {
     double of_style; // deviation
+    bool washed;
     int fills, within;
     double worst;
     double shares; // sum over the large ones
     int large;
+    bool off; // too many fills are beyond the bound
 } Tally;
+
+/** CIEDE2000. */
+static double bound_of(const Tally *tally)
+{
+    return tally->washed ? BOUND_OF_WASH : BOUND;
+}
 
 typedef struct Look {
     int count[3][256], total;
@@ -155,6 +167,7 @@ static Look look_at(const FlPicture *picture, const uint16_t *top, uint16_t draw
 static void judge_frame(const FlPlan *plan, int frame, const FlPicture *picture, Tally *tally)
 {
     GError *error = NULL;
+    const double bound = bound_of(tally);
     g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, &error);
     stop_on(error);
     g_autofree uint16_t *top = find_tops(plan, draws);
@@ -165,14 +178,14 @@ static void judge_frame(const FlPlan *plan, int frame, const FlPicture *picture,
         const FlRegionPlan *painted = &plan->painted[plan->painted_of[draws->draw[r].region]];
         const Look look =
             look_at(picture, top, (uint16_t)(r + 1), plan->paper, painted->style->border_px);
-        if (look.total < ENOUGH)
+        if (look.total < (tally->washed ? LARGE : ENOUGH))
             continue;
         for (int c = 0; c < 3; c++)
             median[c] = median_of(look.count[c], look.total);
         const uint8_t *fill = draws->draw[r].rgb;
         const double d = delta_e(median, fill);
-        tally->fills++, tally->within += d <= BOUND, tally->worst = MAX(tally->worst, d);
-        if (d > BOUND)
+        tally->fills++, tally->within += d <= bound, tally->worst = MAX(tally->worst, d);
+        if (d > bound)
             printf("  frame %d, %s: #%02x%02x%02x for #%02x%02x%02x, %.1f, %d pixels\n",
                    fl_drawing_number(plan->drawing, frame),
                    fl_drawing_region(plan->drawing, draws->draw[r].region)->name, median[0],
@@ -184,7 +197,8 @@ static void judge_frame(const FlPlan *plan, int frame, const FlPicture *picture,
 
 static void print(const char *name, const Tally *tally)
 {
-    printf("%-22s %4d of %4d within %d, worst %4.1f", name, tally->within, tally->fills, BOUND,
+    printf("%-22s %s a wash: %4d of %4d within %.1f, worst %4.1f", name,
+           tally->washed ? "with" : "without", tally->within, tally->fills, bound_of(tally),
            tally->worst);
     if (tally->large > 0)
         printf("; contrast %3.0f %% in %d", 100 * tally->shares / tally->large, tally->large);
@@ -201,15 +215,17 @@ static void judge(const char *folder, const char *style, Tally *all)
     const FlSetting settings[] = {{.name = "style", .value = style},
                                   {.name = "wash", .value = "0"},
                                   {.name = "hue", .value = "0"}};
-    const FlRenderOptions options = {
-        .inputs = inputs, .settings = settings, .n_settings = 3, .output = output};
+    const FlRenderOptions options = {.inputs = inputs,
+                                     .settings = settings,
+                                     .n_settings = all->washed ? 1 : 3,
+                                     .output = output};
     fl_render(&options, &error);
     stop_on(error);
     FlRenderOptions again = options;
     again.overwrite = FL_OVERWRITE_YES;
     g_autoptr(FlPlan) plan = fl_plan_new(&again, &error);
     stop_on(error);
-    Tally tally = {.of_style = all->of_style};
+    Tally tally = {.of_style = all->of_style, .washed = all->washed};
     for (int f = 0; f < fl_drawing_frames(plan->drawing); f++) {
         g_autofree char *file =
             g_strdup_printf("%s/%d.png", scratch, fl_drawing_number(plan->drawing, f));
@@ -219,6 +235,7 @@ static void judge(const char *folder, const char *style, Tally *all)
     }
     g_autofree char *name = g_path_get_basename(folder);
     print(name, &tally);
+    all->off |= tally.within < (tally.washed ? (tally.fills + 1) / 2 : tally.fills);
     all->fills += tally.fills, all->within += tally.within;
     all->worst = MAX(all->worst, tally.worst);
     all->shares += tally.shares, all->large += tally.large;
@@ -235,9 +252,12 @@ int main(int argc, char **argv)
     stop_on(error);
     g_autoptr(FlStyle) style = fl_style_load(path, &error);
     stop_on(error);
-    Tally all = {.of_style = contrast_of_style(style)};
-    for (int i = 2; i < argc; i++)
-        judge(argv[i], path, &all);
-    print("all", &all);
-    return all.within < all.fills;
+    const double of_style = contrast_of_style(style);
+    Tally all[2] = {{.of_style = of_style}, {.of_style = of_style, .washed = true}};
+    for (int k = 0; k < 2; k++) {
+        for (int i = 2; i < argc; i++)
+            judge(argv[i], path, &all[k]);
+        print("all", &all[k]);
+    }
+    return all[0].off || all[1].off;
 }

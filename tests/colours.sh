@@ -1,5 +1,5 @@
 #!/bin/sh
-# Whether fills keep their colours: every sequence with each of our styles; about an hour.
+# Checks that fills keep their colours: every sequence with each of our styles; about an hour.
 #
 # usage: colours.sh COLOURS ANIMATIONS
 #
