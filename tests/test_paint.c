@@ -6,6 +6,7 @@
 #include <glib/gstdio.h>
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { WIDTH = 64, HEIGHT = 56, FRAMES = 5, STEP = 3, PIXELS = WIDTH * HEIGHT };
 
@@ -151,6 +152,40 @@ static void is_carried_as_a_drawing_is(void)
     g_assert_true(memcmp(film->paint[FRAMES - 1], still->paint[FRAMES - 1], 3 * PIXELS) != 0);
 }
 
+static void assert_refused(Film *film, int code, const char *text)
+{
+    g_autoptr(GError) error = NULL;
+    film->n_taken = 0;
+    g_assert_false(fl_paint_region(&film->region, &error));
+    g_assert_error(error, FL_ERROR, code);
+    if (!strstr(error->message, text))
+        g_error("“%s” does not say “%s”", error->message, text);
+    g_assert_null(strchr(error->message, '\n'));
+}
+
+static void a_fluid_of_the_style_or_the_settings_flows(void)
+{
+    g_autoptr(Film) dry = film_new(), set = film_new(), said = film_new();
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *ini = g_build_filename(set->style, "style.ini", NULL), *text = NULL;
+    g_autofree char *frames = g_build_filename(set->style, "frames", NULL);
+    g_autofree char *link = g_build_filename(folder, "frames", NULL);
+    g_autofree char *copy = g_build_filename(folder, "style.ini", NULL);
+    g_assert_true(g_file_get_contents(ini, &text, NULL, NULL));
+    g_autofree char *more = g_strconcat(text, "\nfluid = smoke\n", NULL);
+    g_assert_true(g_file_set_contents(copy, more, -1, NULL));
+    g_assert_cmpint(symlink(frames, link), ==, 0);
+    dry->setting[1] = said->setting[1] = (FlSetting){.name = "carry", .value = "1"};
+    set->setting[1] = (FlSetting){.name = "fluid", .value = "smoke"};
+    set->setting[3] = dry->setting[1], set->region.n_settings = 4;
+    said->setting[0].value = folder;
+    paint(dry), paint(set), paint(said);
+    g_assert_cmpmem(said->paint, sizeof said->paint, set->paint, sizeof set->paint);
+    g_assert_true(memcmp(set->paint, dry->paint, sizeof set->paint) != 0);
+    set->region.flow = flow;
+    assert_refused(set, FL_ERROR_USAGE, "‘fluid’ and ‘flow’");
+}
+
 static void the_layer_is_cut_out_and_has_the_colour(void)
 {
     g_autoptr(Film) film = film_new();
@@ -243,17 +278,6 @@ static void threads_of_one_are_not_those_of_another(void)
     paint(alone);
     g_assert_cmpmem(one->layer, sizeof one->layer, alone->layer, sizeof alone->layer);
     g_assert_cmpmem(three->layer, sizeof three->layer, alone->layer, sizeof alone->layer);
-}
-
-static void assert_refused(Film *film, int code, const char *text)
-{
-    g_autoptr(GError) error = NULL;
-    film->n_taken = 0;
-    g_assert_false(fl_paint_region(&film->region, &error));
-    g_assert_error(error, FL_ERROR, code);
-    if (!strstr(error->message, text))
-        g_error("“%s” does not say “%s”", error->message, text);
-    g_assert_null(strchr(error->message, '\n'));
 }
 
 static void mistakes_are_told_in_one_line(void)
@@ -387,6 +411,7 @@ int main(int argc, char **argv)
 #define TEST(name) g_test_add_func("/paint/" #name, name)
     TEST(paints_what_a_drawing_is_painted);
     TEST(is_carried_as_a_drawing_is);
+    TEST(a_fluid_of_the_style_or_the_settings_flows);
     TEST(the_layer_is_cut_out_and_has_the_colour);
     TEST(a_cut_out_brings_its_own_alpha);
     TEST(threads_of_one_are_not_those_of_another);

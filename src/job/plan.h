@@ -121,6 +121,10 @@ bool fl_plan_find_regions(FlPlan *plan, GError **error);
 /** The style and engine of each painted region, once the size of the picture is known. */
 bool fl_plan_choose_styles(FlPlan *plan, GError **error);
 
+/** Settles the fluid of a region that has a style and an engine: the style's, if the settings name
+ * none and motion does not come from masks or from a given flow. FL_ERROR_USAGE if both do. */
+bool fl_plan_choose_fluid(FlRegionPlan *painted, bool flow, GError **error);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPlan, fl_plan_free)
 
 #endif

@@ -102,16 +102,14 @@ static void list_style(FlPlan *plan, const char *name)
         fl_inputs_add_style(plan->inputs, path);
 }
 
-/* The fluid of a region: the style's, where none is asked for and motion does not come from
- * elsewhere. */
-static bool choose_fluid(const FlPlan *plan, FlRegionPlan *painted, GError **error)
+bool fl_plan_choose_fluid(FlRegionPlan *painted, bool flow, GError **error)
 {
     FlRegionSettings *settings = &painted->settings;
-    const bool elsewhere = settings->motion == FL_MOTION_MASKS || plan->options.flow;
+    const bool elsewhere = settings->motion == FL_MOTION_MASKS || flow;
     if (elsewhere && settings->fluid > FL_FLUID_NONE) {
         return fl_fail(error, FL_ERROR_USAGE,
                        "region %s: ‘fluid’ and ‘%s’ both say how paint moves; use one of them",
-                       painted->name, plan->options.flow ? "flow" : "motion masks");
+                       painted->name, flow ? "flow" : "motion masks");
     }
     if (settings->fluid == FL_FLUID_STYLE)
         settings->fluid = elsewhere ? FL_FLUID_NONE : MAX(painted->style->fluid, FL_FLUID_NONE);
@@ -143,7 +141,7 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
         g_prefix_error(error, "region %s: ", r->name);
         return false;
     }
-    if (!choose_fluid(plan, painted, error) || !check_keyed(painted, error) ||
+    if (!fl_plan_choose_fluid(painted, plan->options.flow, error) || !check_keyed(painted, error) ||
         !check_export(plan, painted, error) || !warn_of_style(plan, painted, error))
         return false;
     if (plan->options.verbose)

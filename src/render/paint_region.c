@@ -128,7 +128,7 @@ static bool choose_style(GivenRegion *given, GError **error)
     plan->engine = plan->style ? fl_engine_of_region(given->styles, plan->style, settings, px,
                                                      &plan->tile, error)
                                : NULL;
-    return plan->engine != NULL;
+    return plan->engine && fl_plan_choose_fluid(plan, region->flow, error);
 }
 
 static bool make_planes(GivenRegion *given, GError **error)

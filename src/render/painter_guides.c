@@ -178,7 +178,7 @@ static FlUniformMotion known_uniform(void *data, int frame, const FlOutlinePair 
 
 static bool has_fluid(const FlPainter *painter)
 {
-    return painter->plan->settings.fluid > FL_FLUID_NONE && !painter->shapes->flow;
+    return painter->plan->settings.fluid > FL_FLUID_NONE;
 }
 
 bool fl_painter_open_fluid(FlPainter *painter, GError **error)
