@@ -281,7 +281,7 @@ static void begin(Follower *f, int region, FlAnchor *anchor)
     f->begun[region] = true;
 }
 
-/* Where a point was when its anchor was. */
+/* The place of a point when its anchor was at rest. */
 static FlPoint at_rest(const FlAnchor *anchor, FlPoint p)
 {
     const FlPoint turn = {(double)anchor->cosine, (double)anchor->sine};

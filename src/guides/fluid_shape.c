@@ -14,8 +14,8 @@
 #define LEAP .05f       // of the page's larger side
 #define NONE (-1)
 
-/** Lays cells over the part, with a margin and a border. Where the part ends at the page's edge
- * there is no margin, so that faces on the edge are open. */
+/* With a margin and a border. A side at the page's edge has no margin, so that faces on the edge
+ * are open. */
 void fl_fluid_lay_grid(FlFluid *f, FlRect part, FlRect page)
 {
     const int page_side = MAX(page.width, page.height), side = MAX(part.width, part.height);
@@ -67,7 +67,6 @@ static float mean_distance(const FlFluid *f, const FlOutline *outline, int c)
     return middle + sum / (float)((r - l) * (b - t)) - (float)(away >= f->px ? away : 0);
 }
 
-/** Blurs a plane to and fro along one way, by a Gaussian of half a cell. */
 void fl_fluid_blur(const FlFluid *f, float *plane, int beside, float *scratch)
 {
     const float side = .1065f;
@@ -152,7 +151,6 @@ static void find_parts(FlFluid *f)
             fill_part(f, c);
 }
 
-/** The motion of a part as a rigid body, at a place. */
 void fl_fluid_rigid(const FlFluidPart *part, float x, float y, float motion[2])
 {
     motion[0] = part->tx - part->turn * (y - part->cy) / part->radius;

@@ -108,7 +108,7 @@ void fl_fluid_free(FlFluid *f)
     g_free(f);
 }
 
-/** The way back to where what is at a place now was a frame before. */
+/** The displacement of the fluid at a place since the frame before. */
 static void way_at(const FlFluid *f, float x, float y, float way[2])
 {
     const float u = fl_fluid_sample(f, f->u, x + .5f, y), v = fl_fluid_sample(f, f->v, x, y + .5f);
@@ -252,7 +252,8 @@ static bool is_open(const FlFluid *f, int c)
            (f->open_v[c + f->stride] > 0 && !f->inner[c + f->stride]);
 }
 
-/** Counts how long contour rests, and what it pushes: out of each cell, and of each part. */
+/** Counts the frames that contour rests, and the volume that it pushes out of each cell and part.
+ */
 static void push_by_contour(FlFluid *f)
 {
     for (int c = 0; c < f->n; c++) {
@@ -285,21 +286,21 @@ static void let_in_growth(FlFluid *f)
     }
 }
 
-/** How far a cell's contour faces up, -1..1. */
+/** The upward part of the normal of a cell's contour, -1..1. */
 static float facing_up(const FlFluid *f, int c)
 {
     return f->nx[c] * f->dials.up[0] + f->ny[c] * f->dials.up[1];
 }
 
-/** What a cell's contour lets through: out if > 0, where it moves and faces up; in if < 0, where it
- * rests and faces down. */
+/** The passage through a cell's contour: out if > 0, through contour that moves and faces up; in if
+ * < 0, through contour that rests and faces down. */
 static double passage(const FlFluid *f, int c)
 {
     const float up = facing_up(f, c), rests = MAX(f->rest[c] - .25f, 0) / .75f;
     return (double)((up < 0 ? rests : 1 - rests) * f->length[c] * up);
 }
 
-/** The speed at which each part rises: that of what is fastest at its top, slowly falling. */
+/** The speed at which each part rises: the highest at its top, slowly falling. */
 static void find_rise(FlFluid *f)
 {
     for (int c = 0; c < f->n; c++) {
@@ -322,7 +323,7 @@ static void find_rise(FlFluid *f)
     }
 }
 
-/** What rises through a part leaves as much as it enters, at most at twice its speed. */
+/** Lets fluid rise through the parts: as much leaves as enters, at most at twice the speed. */
 static void let_through(FlFluid *f)
 {
     find_rise(f);

@@ -403,7 +403,7 @@ static float fluid_at(const Work *w, size_t p)
     return r->fluid && !fixed && !isnan(r->fluid[2 * p]) ? r->wetness : 0;
 }
 
-/** True if a fluid alone moves a leaf, so that nothing else need be found out. */
+/** True if a fluid alone moves a leaf, so that no other motion is needed. */
 static bool is_fluid(const Work *w, int i, FlRect box)
 {
     bool all = w->region->fluid != NULL;

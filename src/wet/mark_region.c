@@ -127,8 +127,8 @@ static float overlap_of(const Planes *planes)
     return (float)both / (float)MAX(MIN(before, now), 1);
 }
 
-/** The contour in a frame that was not looked at, or only in an earlier run, which kept what its
- * points were. */
+/** The contour in a frame that was not looked at, or only in an earlier run, of which the values of
+ * its points are kept. */
 static bool find_first(const FlWet *wet, FlMarker *marker, int frame, GError **error)
 {
     const int earlier = before_that(wet, marker->plan, frame);
@@ -145,7 +145,7 @@ static bool find_first(const FlWet *wet, FlMarker *marker, int frame, GError **e
         !fl_moving_edge_look(&marker->before, &shape, error))
         return false;
     if (kept.n != marker->before.n)
-        marker->before.n = 0; // nothing is known of it
+        marker->before.n = 0; // its values are unknown
     for (int i = 0; i < marker->before.n; i++) {
         const FlEdgePoint place = marker->before.point[i];
         marker->before.point[i] = kept.point[i];
