@@ -124,7 +124,7 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
 
 /* ---- a frame --------------------------------------------------------------------------------- */
 
-/* What the settings say, in a newer word or an older one, else the style. */
+/* The value of a setting, by its newer word, else its older one, else the style. */
 static float said(double dial, double older, float of_style)
 {
     return !isnan(dial) ? (float)dial : !isnan(older) ? (float)older : of_style;
@@ -142,12 +142,6 @@ FlWashStyle fl_wash_style_of(const FlPaintedRegion *painted)
                          .pool = said(t->pool, NAN, style->pool),
                          .blooms = said(t->blooms, NAN, style->blooms),
                          .hue = said(t->hue, 72 * t->pigments, style->hue)};
-}
-
-static bool same_style(const FlWashStyle *a, const FlWashStyle *b)
-{
-    return a->wash == b->wash && a->passes == b->passes && a->tide == b->tide &&
-           a->pool == b->pool && a->blooms == b->blooms && a->hue == b->hue;
 }
 
 /* The mean of a region's styles, by their shares in the frame. */
@@ -178,7 +172,8 @@ static int wash_of_region(FlWashes *washes, const FlComposeInput *input, int reg
     if (wash.style.wash <= 0 && wash.style.hue <= 0)
         return -1;
     for (int w = 0; w < washes->n; w++)
-        if (washes->wash[w].key == wash.key && same_style(&washes->wash[w].style, &wash.style))
+        if (washes->wash[w].key == wash.key &&
+            memcmp(&washes->wash[w].style, &wash.style, sizeof wash.style) == 0)
             return w;
     washes->wash = g_renew(FlWash, washes->wash, washes->n + 1);
     washes->wash[washes->n] = wash;
