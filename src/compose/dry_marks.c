@@ -33,7 +33,7 @@ enum { KEY_BEND = 401, KEY_STICK, KEY_LINE, KEY_SMEAR, KEY_RUB, KEY_EDGE, KEY_GR
 #define GRAIN_PX 2.2f  // of bumps where there is no sheet
 #define NOISE_DEV 2.6f // 1 / deviation of noise
 
-/* What is known of a region before its rows are laid. */
+/* The facts about a region that are the same for all of its rows. */
 typedef struct Hand {
     const FlMarking *marking;
     const Tool *tool;
@@ -44,7 +44,7 @@ typedef struct Hand {
     FlRect around;
 } Hand;
 
-/* Places in a row of pixels, and what noise says there. */
+/* A value at each pixel of a row. */
 typedef float Row[FL_NOISE_ROW];
 
 static void noise_at(const Hand *hand, int key, const float *x, const float *y, const float cell[2],

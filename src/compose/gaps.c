@@ -67,7 +67,7 @@ static uint32_t paint_at(const FlLayer *layer, float x, float y)
     return paint;
 }
 
-/* What becomes of a layer. */
+/* A layer whose edges are off. */
 typedef struct Moved {
     FlRect box;
     uint8_t *coverage, *knockout, *rgba;

@@ -5,7 +5,7 @@
 #include "compose/layers.h"
 #include "drawing/drawing.h"
 
-/** How far a region is off. */
+/** The displacement of a region's edges. */
 typedef struct FlGaps {
     float strength;  // 0..1
     uint64_t key;    // of the film's seed and the region's name

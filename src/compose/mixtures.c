@@ -1,4 +1,4 @@
-/* Which mixture of two pigments is nearest to a fill, and which way its hue drifts where one of
+/* Finds the mixture of two pigments that is nearest to a fill, and the drift of its hue when one of
  * them prevails. */
 #include "base/colour_difference.h"
 #include "compose/kubelka_munk.h"
@@ -25,7 +25,7 @@ typedef struct Candidate {
 /* On the paper of most styles: pigments are chosen as for white paper, whatever paint lies on. */
 static const uint8_t paper[3] = {245, 240, 230};
 
-/* All that was ever searched; it is the same for everyone. */
+/* The mixtures of all fills so far, for all films and threads. */
 static GMutex mutex;
 static Candidate *candidates;
 static int n_candidates;

@@ -23,7 +23,7 @@ typedef struct FlMixture {
     const FlPigment *pigment[2];
     double share, thickness; // share of the second one, 0..1
     uint8_t rgb[3];          // its colour on the paper
-    float turn[3]; // density, by channel, of one CIE76 of hue towards the second pigment, as light
+    float turn[3]; // ln of a factor on each channel: one CIE76 of hue towards the second pigment
 } FlMixture;
 
 /** The mixture for a fill: hue counts most, then lightness. Any thread; each fill is searched once.

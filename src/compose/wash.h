@@ -40,8 +40,8 @@ typedef struct FlWashes {
 } FlWashes;
 
 /**
- * Finds the washes of a frame, which depend on nothing but its shapes, whole as if no other shape
- * lay over them, and on how far each has moved and turned since it was first seen.
+ * Finds the washes of a frame. They depend only on its shapes, whole as if no other shape lay over
+ * them, and on the motion of each since it was first seen.
  * FL_ERROR_NO_MEMORY.
  */
 bool fl_washes_find(FlWashes *washes, const FlComposeInput *input, const FlDrawList *draws,

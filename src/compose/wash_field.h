@@ -5,12 +5,12 @@
 #include "base/curves.h"
 #include "compose/wash.h"
 
-/** A region, and what moves as one in it: all of it, or a limb. */
+/** A part of a wash that moves as one: a whole region, or a limb. */
 typedef struct FlWashPart {
     int region;
     FlAnchor anchor;
     const FlLimb *limb; // NULL: all of it
-    float *weight;      // at each point, how much of the wash is this part's
+    float *weight;      // of the part in the wash, at each point
 } FlWashPart;
 
 #define FL_WASH_ROOMS 5
@@ -23,12 +23,12 @@ typedef struct FlWashField {
     float light[2]; // unit vector to the side of the shadow
     FlWashPart *part;
     int n_parts;
-    float *planes; // of what follows and of the parts' weights
+    float *planes; // memory of the planes below and of the parts' weights
     float *mask;   // coverage at each point, as if no other shape lay over it
     float *side;   // -1 light side .. 1 shadow side
-    float *around; // coverage of what is around each point, by the size of the shapes
+    float *around; // mean coverage around each point, as far as the shapes are large
     float *room[FL_WASH_ROOMS];
-    float *turned; // and as much again: of fl_field_blur()
+    float *turned; // two planes: scratch of fl_field_blur()
 } FlWashField;
 
 static inline size_t fl_wash_points(const FlWash *wash)
@@ -56,12 +56,12 @@ void fl_field_blur_inside(const FlWashField *field, float *plane, float sigma_px
 void fl_field_fill_masks(const FlWashField *field, const FlWashes *washes, int w,
                          const FlDrawList *draws);
 
-/** Divides the points of a region among its limbs, by how far each point is from them. */
+/** Divides the points of a region among its limbs, by their distance. */
 void fl_field_divide(const FlWashField *field);
 
-/** Finds FlWashField.side: the place of each point along the light, from the middle of what
- * surrounds it, by the extent of that: as of the shape itself if it is small, as of its margin if
- * it is large. */
+/** Finds FlWashField.side: the place of each point along the light, from the middle of the shapes
+ * around the point, as a share of their extent: a small shape is taken whole, a large one near the
+ * point. */
 void fl_field_find_side(const FlWashField *field);
 
 /** Wet paint gathers inside contours that face the shadow. The page's edge is no contour. */

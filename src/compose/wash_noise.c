@@ -146,7 +146,7 @@ static void add_values(const FlWashField *field, const float *weight, size_t at,
         const float x = places->x[i], y = places->y[i];
         const bool first = all[p] <= 0, leads = first || weight[p] > most[p];
         const float apart = first ? 0 : fabsf(x - lead_x[p]) + fabsf(y - lead_y[p]);
-        const float along = fl_clamp(1 - apart / APART_PX, 0, 1); // what moves along is one with it
+        const float along = fl_clamp(1 - apart / APART_PX, 0, 1); // 1: both move as one
         all[p] += weight[p] + 1e-6f;
         most[p] = MAX(most[p], weight[p]) + along * MIN(most[p], weight[p]);
         if (leads)

@@ -1,4 +1,4 @@
-/* What a wash takes from its shapes: masks, light and shadow, pools. */
+/* The part of a wash that follows from its shapes: masks, light and shadow, pools. */
 #include "base/alloc.h"
 #include "compose/wash_field.h"
 

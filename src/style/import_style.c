@@ -272,7 +272,7 @@ static bool find_border(Import *import, GError **error)
     return true;
 }
 
-/* Where paint fills the frames there is no rim to look at. */
+/* Paint that fills the frames has no rim to look at. */
 static bool find_front(Import *import, GError **error)
 {
     FlFrontStyle *front = &import->style->front;
