@@ -143,7 +143,7 @@ static void test_vanish(void)
     const float shrunk = charge_of(scene);
     mark(scene, 80, 80, -38);
     g_assert_cmpfloat(shrunk, >, 300);
-    g_assert_cmpfloat(charge_of(scene), <, 0.5f * shrunk);
+    g_assert_cmpfloat(charge_of(scene), <, 0.01f * shrunk);
     scene_free(scene);
 }
 
@@ -240,6 +240,7 @@ static void test_dries(void)
         fl_wet_sheet_dry(&scene->sheet, 1);
         const double now = darkness(scene);
         g_assert_cmpfloat(now, <=, last);
+        g_assert_true(k > 20 || now > last / 2); // not at once
         last = now;
     }
     g_assert_cmpfloat(last, ==, 0);
