@@ -145,7 +145,8 @@ static void the_fill_stays_the_fill(void)
     g_assert_cmpfloat(lower, >, upper); // the light comes from above
 }
 
-/* Means of small shapes, each with a wash of its own: the noise of no wash makes one darker. */
+/* Small shapes, each with a wash of its own: noise makes none darker as a whole, and the light
+ * comes from above. */
 static void each_of_many_fills_stays(void)
 {
     g_autoptr(GString) page = g_string_new(NULL);
@@ -157,15 +158,17 @@ static void each_of_many_fills_stays(void)
     g_autoptr(Scratch) folder = scratch_make();
     g_autoptr(FlDrawing) drawing = open_film(folder, frames);
     g_autofree Tones *tones = lay_frame(drawing, 0, &even);
-    double n[8] = {0}, tone[8] = {0}, play[8] = {0};
+    double n[8] = {0}, tone[8] = {0}, play[8] = {0}, shadow[8] = {0};
     for (int i = 0; i < W * H; i++) {
         const int k = i % W / 100 + 4 * (i / W / 150);
         if (tones->tone[i] > BARE)
-            n[k]++, tone[k] += (double)tones->tone[i], play[k] += tones->play[i];
+            n[k]++, tone[k] += (double)tones->tone[i], play[k] += tones->play[i],
+                shadow[k] += (double)tones->tone[i] * (i / W % 150 < 75 ? -1 : 1);
     }
     for (int k = 0; k < 8; k++) {
         g_test_message("mean of ln %.3f, of play %.3f", tone[k] / n[k],
                        play[k] / n[k] / FL_PLAY_ONE);
+        g_assert_cmpfloat(shadow[k] / n[k], >, .03);
         g_assert_cmpfloat(fabs(tone[k] / n[k]), <, .03);
         g_assert_cmpfloat(fabs(play[k] / n[k] / FL_PLAY_ONE), <, .3);
     }
