@@ -14,7 +14,7 @@
  * PNG without the sum of the chunk that has it. */
 #define PREFIX "fluidy-svg provenance 1 "
 #define DIGITS 32
-#define SELF (sizeof PREFIX - 1 + DIGITS + 1) // where it begins in the mark
+#define SELF (sizeof PREFIX - 1 + DIGITS + 1) // its offset in the mark
 #define MARK_BYTES (SELF + DIGITS)
 #define SUM_BYTES 4
 
@@ -22,7 +22,7 @@ static const uint8_t png_head[] = {0x89, 'P', 'N', 'G'};
 
 /** A file in memory. */
 typedef struct Mapped {
-    uint8_t *data; // NULL: it is empty or cannot be mapped
+    uint8_t *data; // NULL: the file is empty or cannot be mapped
     size_t bytes;
 } Mapped;
 
@@ -81,7 +81,7 @@ FlDigest fl_mark_of_frame(FlDigest film, int number)
     return film;
 }
 
-/** Returns: where the mark is; NULL: there is none. */
+/** The mark in a file; NULL if it has none. */
 static const uint8_t *find_mark(const Mapped *file)
 {
     const uint8_t *at =

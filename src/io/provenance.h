@@ -18,25 +18,25 @@ typedef enum FlMark {
     FL_MARK_WHOLE,
 } FlMark;
 
-/** The mark of what was made from all that `made_from` is the digest of; to be freed. NULL if that
- * is not known. */
+/** The text of a mark that has the digest of everything a file was made from, and zeros for that
+ * of the file itself. To be freed; NULL for an unknown digest. */
 char *fl_mark_text(FlDigest made_from);
 
-/** The digest of what a frame of this number was made from, from that of its film. */
+/** The digest for the frame with this number of a film that has the digest `film`. */
 FlDigest fl_mark_of_frame(FlDigest film, int number);
 
 /**
- * Completes the mark in a file that is written and flushed, whose metadata has it; a PNG or a GIF
- * without a mark gets it at its end. fd: open for reading and writing. mark NULL: nothing to do.
+ * Completes the mark in the metadata of a file that is written and flushed; appends it to a PNG or
+ * a GIF without a mark. fd: open for reading and writing. Does nothing if `mark` is NULL.
  *
  * Returns: false with errno.
  */
 bool fl_mark_seal(int fd, const char *mark);
 
-/** Reads the mark of a file, and from it *made_from. */
+/** Reads the mark of a file, and from the mark *made_from. */
 FlMark fl_mark_read(const char *path, FlDigest *made_from);
 
-/** True if a file is as it was written, by a render of the same. */
+/** True if a file is unchanged since it was written, and was made from `made_from`. */
 bool fl_mark_is(const char *path, FlDigest made_from);
 
 #endif

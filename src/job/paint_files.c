@@ -22,7 +22,7 @@ static void restore(const uint8_t *rgba, size_t p, FlPaintedRegion *painted)
         painted->alpha[p] = rgba[3];
 }
 
-/* A region that is never there has no rectangle of its own. */
+/* The area of the file: the page, also for a region that is in no frame and has no rectangle. */
 static FlRect area_of(const FlPaintedRegion *painted, FlPaintArea area)
 {
     const bool whole = area != FL_PAINT_AREA_REGION || painted->rect.width == 0;
@@ -51,17 +51,17 @@ static char *anchor_text(const FlPaintedRegion *painted)
     return g_string_free(text, FALSE);
 }
 
-/* True if numbers, which a file may hold in any size, make an anchor. */
+/* True if numbers from a file, which may be anything, make an anchor. */
 static bool is_anchor(const FlAnchor *anchor)
 {
     const float place[] = {anchor->x, anchor->y, anchor->rest_x, anchor->rest_y, anchor->side};
     bool good = fabsf(anchor->cosine) <= 1 && fabsf(anchor->sine) <= 1 && anchor->side >= 0;
     for (size_t k = 0; k < G_N_ELEMENTS(place); k++)
-        good &= fabsf(place[k]) <= FL_POSE_MOST_PX; // not of what is no number
+        good &= fabsf(place[k]) <= FL_POSE_MOST_PX; // false for NAN
     return good;
 }
 
-/* The same of a limb, whose covariance is below its variances. */
+/* True if they make a limb, whose covariance is bounded by its variances. */
 static bool is_limb(const FlLimb *limb)
 {
     const float most = FL_POSE_MOST_PX * FL_POSE_MOST_PX, *spread = limb->spread;

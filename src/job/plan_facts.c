@@ -194,7 +194,7 @@ static void add_method(FlFacts *facts, const FlShapes *shapes, const FlRegionPla
     fl_facts_add_number(facts, "whether it is a loop", painted->loops);
 }
 
-/* drawing: NULL: they are counted from 1. */
+/* Adds the numbers of frames; without a drawing they count from 1 in every render. */
 static void add_numbers(FlFacts *facts, const FlDrawing *drawing)
 {
     for (int f = 0; drawing && f < fl_drawing_frames(drawing); f++)

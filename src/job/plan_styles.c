@@ -61,7 +61,7 @@ static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GErro
                 style->path, style->ink->beyond);
 }
 
-/* Px of the drawing, as it is drawn, per px in which a region's sizes are given. */
+/* Px of the drawing as it is painted per px of a region's sizes. */
 static float texture_px(const FlPlan *plan, const FlParams *params)
 {
     if (params->style_by_page)
@@ -69,7 +69,7 @@ static float texture_px(const FlPlan *plan, const FlParams *params)
     return plan->half ? .5f : 1;
 }
 
-/* Pairs of guides are exported to ebsynth; the engine must have them. */
+/* Checks that the engine has the pairs of guides that are exported to ebsynth. */
 static bool check_export(const FlPlan *plan, const FlRegionPlan *painted, GError **error)
 {
     if (!plan->options.ebsynth || plan->options.merge || painted->engine->guide_pairs)
@@ -81,7 +81,8 @@ static bool check_export(const FlPlan *plan, const FlRegionPlan *painted, GError
         painted->name, painted->engine->name);
 }
 
-/* Two layers are mixed while a style replaces another; cut out, they have other shapes. */
+/* Two layers are mixed while a style replaces another: both must have the shape of the region,
+ * which paint that is cut out has not. */
 static bool check_keyed(const FlRegionPlan *painted, GError **error)
 {
     const FlEngine *engine = painted->engine;

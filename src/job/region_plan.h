@@ -14,7 +14,7 @@ typedef struct FlRegionPlan {
     const char *name; // borrowed
     double area_px;   // mean, to balance the work
     FlRegionSettings settings;
-    FlKeys *styles; // the region's, of which this is that of key `style_key`; NULL: not keyed
+    FlKeys *styles; // of the region; `style` is that of key `style_key`; NULL: not keyed
     int style_key;
     bool more;                    // the next painted region is the same region in its next style
     const FlStyleInstance *style; // borrowed

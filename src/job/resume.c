@@ -62,7 +62,7 @@ static bool find_record(FlResume *resume, const FlPlan *plan, const FlFacts *fac
 
 /* ---- files that exist ------------------------------------------------------------------------ */
 
-/* Frames that are there keep a film from being made, where they may have been forgotten. */
+/* A frame of an earlier film keeps a film from being made: its user may have forgotten it. */
 static bool frame_is_free(const FlPlan *plan, const char *file, GError **error)
 {
     if (fl_check_not_exists(file, plan->movie ? NULL : error))
@@ -87,8 +87,8 @@ static bool refuse_frame(const FlPlan *plan, const char *file, const char *but, 
     return false;
 }
 
-/* The files of a finished frame exist and are as they were written; those of others, which were
- * kept, only exist. */
+/* Checks that the files of a finished frame exist and are unchanged; files of other renders, which
+ * were kept, need only exist. */
 static bool is_finished(const FlResume *resume, const FlPlan *plan, int frame,
                         const GPtrArray *files, GError **error)
 {
@@ -398,7 +398,7 @@ static bool keeps_all(const FlPlan *plan, const FlSequence *sequence)
     return true;
 }
 
-/* The same files are to be watched as if they had been read. */
+/* Lists the files that the earlier render read, so that they are watched. */
 static void tell_inputs(const FlPlan *plan, const FlRecord *record)
 {
     for (guint k = 0; k < record->inputs->list->len; k++) {
@@ -484,7 +484,7 @@ static void verify_file(Verify *verify, const char *file, FlDigest made_from)
         note(verify->plan, g_strdup_printf("%s: %s", file, fault));
 }
 
-/* The frames by their names alone, where no drawing was read. */
+/* Verifies frames by their names, since no drawing was read. */
 static bool verify_frames(Verify *verify, GError **error)
 {
     const FlPlan *plan = verify->plan;

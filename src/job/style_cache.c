@@ -45,7 +45,8 @@ void fl_style_cache_free(FlStyleCache *cache)
     g_free(cache);
 }
 
-/* Parameters of the search and of what is shown, which recordings are read without. */
+/* Parameters of the search and of the display, on which the reading of recordings does not depend.
+ */
 static bool is_of_search(const char *name)
 {
     static const char *const names[] = {"patchmatch-iterations",
@@ -80,8 +81,7 @@ static bool same_params(const FlParams *a, const FlParams *b)
     return true;
 }
 
-/* Of a large recording fewer frames are in memory than the parameters allow, unless they want all.
- */
+/* The frames of a recording in memory: fewer than the parameters allow if it is large; 0: all. */
 static int window_of(const FlParams *params, const FlStyle *style)
 {
     const double frame = (double)style->width * style->height * BYTES_OF_WINDOW;

@@ -8,9 +8,9 @@
 /** A value from a frame on. */
 typedef struct FlKey {
     char *value;   // as text
-    double amount; // the same of a number
+    double amount; // the value of a number
     int frame;     // its number, as ‘frames’ counts
-    int over;      // frames in which a style replaces the one before; 0: at once
+    int over;      // frames that a style takes to replace the one before; 0: at once
 } FlKey;
 
 /** The keys of an option in the order of their frames. */

@@ -156,17 +156,15 @@ char *fl_option_help(const FlOption *option)
     return g_string_free(help, FALSE);
 }
 
-static bool is_number(const FlOption *option)
-{
-    return option->type == FL_OPTION_INT || option->type == FL_OPTION_COUNT ||
-           option->type == FL_OPTION_REAL || option->type == FL_OPTION_DIAL ||
-           option->type == FL_OPTION_FIXED;
-}
-
 static bool is_real(const FlOption *option)
 {
     return option->type == FL_OPTION_REAL || option->type == FL_OPTION_DIAL ||
            option->type == FL_OPTION_FIXED;
+}
+
+static bool is_number(const FlOption *option)
+{
+    return option->type == FL_OPTION_INT || option->type == FL_OPTION_COUNT || is_real(option);
 }
 
 bool fl_option_reject(const FlOption *option, const char *value, GError **error)

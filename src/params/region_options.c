@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A key of a region that is no option of its own: style-scale. */
+/* A second key of regions for the option style-scale. */
 #define SCALE "scale"
 
 const char *const *fl_region_settings_keys(void)
@@ -27,7 +27,7 @@ const char *const *fl_region_settings_keys(void)
     return keys;
 }
 
-/* Takes the keys of an option away; NULL: of all but styles. */
+/* Removes the keys of an option; NULL: of all options but styles. */
 static void drop_keys(FlRegionSettings *settings, const FlOption *option)
 {
     for (guint i = settings->keyed ? settings->keyed->len : 0; i-- > 0;) {
@@ -183,7 +183,7 @@ static bool set_preset(FlRegionSettings *settings, const char *word, GError **er
     return true;
 }
 
-/* LazyFluids has weights of its own: those of its preset in use, else of ours. */
+/* LazyFluids has weights of its own: those of a preset that chose it, else of lazyfluids-steady. */
 static bool set_engine(FlRegionSettings *settings, const FlOption *option, const char *value)
 {
     const FlEngineChoice before = settings->engine;
@@ -219,7 +219,7 @@ static bool set_plain(FlRegionSettings *settings, const char *key, const char *v
     return fl_fail(error, FL_ERROR_USAGE, "unknown key “%s”%s", key, hint);
 }
 
-/* A folder may end as a key does. */
+/* True if a value is keyed. The name of a folder may end like a key, and is then a plain value. */
 static bool is_keyed(const FlOption *option, const char *value, const char *folder)
 {
     g_autofree char *path = option->type == FL_OPTION_STYLE ? style_path(value, folder) : NULL;
@@ -227,7 +227,7 @@ static bool is_keyed(const FlOption *option, const char *value, const char *fold
            (!path || !g_file_test(path, G_FILE_TEST_IS_DIR));
 }
 
-/* Checks each value of keys as a plain one would be; the first one is left in the field. */
+/* Checks the values of keys like plain ones, from the last to the first, which the field keeps. */
 static bool set_keys(FlRegionSettings *settings, FlKeys *keys, const char *folder, GError **error)
 {
     const FlOption *option = keys->option;

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#define FLAT 0.02 // area of an outline, share of the square of its extent, that says where it is
+#define FLAT 0.02 // share of the extent's square from which on the area of an outline has a pose
 
 /* The nodes of an outline, and what it encloses. */
 typedef struct Outline {
@@ -88,7 +88,8 @@ static FlPoint middle_of(const Outline *outline)
                      CLAMP(y, outline->least.y, outline->most.y)};
 }
 
-/* The spread of what it encloses, within that of a rectangle of its extent; of a line that. */
+/* Finds the variances of the enclosed area, which the extent bounds; a line has those of its
+ * extent's rectangle. */
 static void find_spread(const Outline *outline, FlPoint middle, float spread[3])
 {
     const FlPoint origin = g_array_index(outline->nodes, FlPoint, 0);
