@@ -17,6 +17,16 @@ bool fl_fail(GError **error, FlError code, const char *format, ...)
     return false;
 }
 
+void fl_tell(void (*to)(const char *message, void *data), void *data, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    g_autofree char *line = to ? g_strdup_vprintf(format, arguments) : NULL;
+    va_end(arguments);
+    if (to)
+        to(line, data);
+}
+
 void fl_parallel_error_keep(GError **first, GError *failure)
 {
     static GMutex mutex;

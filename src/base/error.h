@@ -1,4 +1,4 @@
-/* Sets errors, and keeps the first one of parallel workers. */
+/* Sets errors, keeps the first one of parallel workers, and tells lines to a caller. */
 #ifndef FLUIDY_BASE_ERROR_H
 #define FLUIDY_BASE_ERROR_H
 
@@ -7,6 +7,10 @@
 
 /** Sets an error of FL_ERROR. Returns: false. */
 bool fl_fail(GError **error, FlError code, const char *format, ...) G_GNUC_PRINTF(3, 4);
+
+/** Sends a line to a callback of a caller, such as FlRenderOptions.note; `to` may be NULL. */
+void fl_tell(void (*to)(const char *message, void *data), void *data, const char *format, ...)
+    G_GNUC_PRINTF(3, 4);
 
 /** Moves `failure` (may be NULL) into *first, or frees it if there is one already. Any thread.
  */

@@ -1,5 +1,6 @@
 #include "drawing/open_drawing.h"
 
+#include "base/error.h"
 #include "base/headroom.h"
 #include "base/suggest.h"
 #include <string.h>
@@ -134,8 +135,7 @@ static bool report(const FlWarnings *warnings, const FlRenderOptions *options, G
                         n, n == 1 ? "" : "s");
             return false;
         }
-        if (options->warning)
-            options->warning(line, options->data);
+        fl_tell(options->warning, options->data, "%s", line);
     }
     return true;
 }
@@ -147,10 +147,9 @@ static void offer_config(const FlDrawing *drawing, const FlRenderOptions *option
     g_autofree char *path = strcmp(folder, ".") == 0
                                 ? g_strdup("fluidy-svg.conf")
                                 : g_build_filename(folder, "fluidy-svg.conf", NULL);
-    if (options->config || !options->note || !g_file_test(path, G_FILE_TEST_IS_REGULAR))
-        return;
-    g_autofree char *line = g_strdup_printf("%s is not used; ‘config’ %s paints by it", path, path);
-    options->note(line, options->data);
+    if (!options->config && g_file_test(path, G_FILE_TEST_IS_REGULAR))
+        fl_tell(options->note, options->data, "%s is not used; ‘config’ %s paints by it", path,
+                path);
 }
 
 /* The state of tell_reading(). */

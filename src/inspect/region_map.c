@@ -2,6 +2,7 @@
 #include <fluidy/inspect.h>
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/exists.h"
 #include "base/json.h"
 #include "base/surface.h"
@@ -439,12 +440,10 @@ static bool write_frames(const FlRenderOptions *options, const char *what, Write
     for (int f = 0; f < n; f++)
         if (!write(&subject, f, pattern, error))
             return false;
-    g_autofree char *line = g_strdup_printf("%d %s%s: %s", n, what, n == 1 ? "" : "s", pattern);
     g_autofree char *gaps = fl_drawing_left_out(subject.drawing, subject.options.missing);
-    if (options->note)
-        options->note(line, options->data);
-    if (options->note && gaps)
-        options->note(gaps, options->data);
+    fl_tell(options->note, options->data, "%d %s%s: %s", n, what, n == 1 ? "" : "s", pattern);
+    if (gaps)
+        fl_tell(options->note, options->data, "%s", gaps);
     return true;
 }
 

@@ -7,19 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Sends a line to one of the options' callbacks. */
-G_GNUC_PRINTF(3, 4)
-static void send_line(const FlPlan *plan, void (*to)(const char *, void *), const char *format, ...)
-{
-    if (!to)
-        return;
-    va_list arguments;
-    va_start(arguments, format);
-    g_autofree char *line = g_strdup_vprintf(format, arguments);
-    va_end(arguments);
-    to(line, plan->options.data);
-}
-
 /* A warning about a style; false with an error under strict. */
 G_GNUC_PRINTF(3, 4)
 static bool warn(const FlPlan *plan, GError **error, const char *format, ...)
@@ -31,7 +18,7 @@ static bool warn(const FlPlan *plan, GError **error, const char *format, ...)
     if (plan->options.strict)
         g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s (a warning under ‘strict’)", line);
     else
-        send_line(plan, plan->options.warning, "%s", line);
+        fl_tell(plan->options.warning, plan->options.data, "%s", line);
     return !plan->options.strict;
 }
 
@@ -146,8 +133,8 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
         !check_export(plan, painted, error) || !warn_of_style(plan, painted, error))
         return false;
     if (plan->options.verbose)
-        send_line(plan, plan->options.note, "region %s: style %s, engine %s", r->name,
-                  painted->style->path, painted->engine->name);
+        fl_tell(plan->options.note, plan->options.data, "region %s: style %s, engine %s", r->name,
+                painted->style->path, painted->engine->name);
     return true;
 }
 
@@ -156,10 +143,10 @@ static void note_older_preset(const FlPlan *plan)
 {
     for (int p = 0; p < plan->n_painted; p++)
         if (plan->painted[p].settings.older_preset) {
-            send_line(plan, plan->options.note,
-                      "region %s: the preset “fluid” is called “lazyfluids-steady” now; the older "
-                      "word goes with the next release",
-                      plan->painted[p].name);
+            fl_tell(plan->options.note, plan->options.data,
+                    "region %s: the preset “fluid” is called “lazyfluids-steady” now; the older "
+                    "word goes with the next release",
+                    plan->painted[p].name);
             return;
         }
 }

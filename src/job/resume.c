@@ -132,26 +132,17 @@ static bool check_files(const FlResume *resume, const FlPlan *plan, GError **err
     return true;
 }
 
-/* Tells a line, which is freed. */
-static void note(const FlPlan *plan, char *line)
-{
-    if (plan->options.note)
-        plan->options.note(line, plan->options.data);
-    g_free(line);
-}
-
 static void note_resume(const FlResume *resume, const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
     const int n = resume->first - plan->first;
-    g_autofree char *lack = g_strdup_printf(
-        "report and statistics lack the %d frames that an earlier run has painted; use ‘overwrite’ "
-        "to paint them again",
-        n);
-    note(plan, g_strdup_printf("resuming an earlier run, which painted %d of %d frames", n,
-                               plan->end - plan->first));
-    if (o->warning && n > 0 && (o->report || o->stats))
-        o->warning(lack, o->data);
+    fl_tell(o->note, o->data, "resuming an earlier run, which painted %d of %d frames", n,
+            plan->end - plan->first);
+    if (n > 0 && (o->report || o->stats))
+        fl_tell(o->warning, o->data,
+                "report and statistics lack the %d frames that an earlier run has painted; use "
+                "‘overwrite’ to paint them again",
+                n);
 }
 
 bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GError **error)
@@ -481,7 +472,7 @@ static void verify_file(Verify *verify, const char *file, FlDigest made_from)
     }
     verify->n++, verify->n_wrong += fault != NULL;
     if (fault)
-        note(verify->plan, g_strdup_printf("%s: %s", file, fault));
+        fl_tell(verify->plan->options.note, verify->plan->options.data, "%s: %s", file, fault);
 }
 
 /* Verifies frames by their names, since no drawing was read. */
@@ -521,7 +512,7 @@ static void note_cause(const FlPlan *plan, const FlFacts *facts)
     g_autoptr(FlRecord) record = bytes ? fl_record_parse(bytes) : NULL;
     g_autofree char *cause = record ? fl_facts_difference(record->facts, facts) : NULL;
     if (cause)
-        note(plan, g_strdup_printf("since the last render, %s", cause));
+        fl_tell(plan->options.note, plan->options.data, "since the last render, %s", cause);
 }
 
 bool fl_resume_verify(const FlPlan *plan, GError **error)
@@ -539,6 +530,7 @@ bool fl_resume_verify(const FlPlan *plan, GError **error)
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
                     "%d of %d files are not as they would be made now", verify.n_wrong, verify.n);
     else
-        note(plan, g_strdup_printf("all %d files are as they would be made now", verify.n));
+        fl_tell(plan->options.note, plan->options.data,
+                "all %d files are as they would be made now", verify.n);
     return verify.n_wrong == 0;
 }

@@ -1,5 +1,6 @@
 #include "job/style_size.h"
 
+#include "base/error.h"
 #include "base/limits.h"
 #include "config.h"
 #include "io/lock.h"
@@ -94,10 +95,9 @@ static FlStyle *paint(const FlRecipe *recipe, const char *path, int size,
                       const FlRenderOptions *options, GError **error)
 {
     Teller teller = {options, g_get_monotonic_time()};
-    g_autofree char *line = g_strdup_printf(
-        "%s: simulating its paint at %d times the size; it is kept for the next time", path, size);
-    if (options->note)
-        options->note(line, options->data);
+    fl_tell(options->note, options->data,
+            "%s: simulating its paint at %d times the size; it is kept for the next time", path,
+            size);
     return fl_recipe_paint(recipe, path, size, tell, &teller, error);
 }
 
@@ -133,11 +133,9 @@ static FlStyle *make(const FlRecipe *recipe, const char *path, int size, const c
 {
     FlStyle *style = paint(recipe, path, size, options, error);
     g_autoptr(GError) problem = NULL;
-    if (style && !fl_style_write(style, folder, true, &problem) && options->note) {
-        g_autofree char *line =
-            g_strdup_printf("%s (the paint is used, but not kept)", problem->message);
-        options->note(line, options->data);
-    }
+    if (style && !fl_style_write(style, folder, true, &problem))
+        fl_tell(options->note, options->data, "%s (the paint is used, but not kept)",
+                problem->message);
     return style;
 }
 

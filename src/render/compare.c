@@ -3,6 +3,7 @@
 #include <fluidy/style.h>
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/exists.h"
 #include "base/suggest.h"
 #include "drawing/open_drawing.h"
@@ -202,9 +203,7 @@ static bool show_frame(void *taker, const FlSinkFrame *frame, int width, int hei
 /* Paints all frames of a row. */
 static bool paint(Comparison *c, const Variant *variant, int row, GError **error)
 {
-    g_autofree char *line = g_strdup_printf("%s %s", c->kind->noun, variant->name);
-    if (c->options.note)
-        c->options.note(line, c->options.data);
+    fl_tell(c->options.note, c->options.data, "%s %s", c->kind->noun, variant->name);
     const size_t n = c->options.n_settings;
     const size_t own = (size_t)variant->n;
     g_autofree FlSetting *settings = g_new0(FlSetting, n + own);
@@ -269,10 +268,7 @@ static bool compare(const Kind *kind, const FlRenderOptions *options, const Vari
     if (!fl_contact_sheet_save(&c.contact, c.path, options->overwrite == FL_OVERWRITE_YES, error) ||
         (kind->has_page && !write_page(&c, variants, n, error)))
         return false;
-    g_autofree char *line =
-        g_strdup_printf("%d %s%s: %s", n, kind->noun, n == 1 ? "" : "s", c.path);
-    if (options->note)
-        options->note(line, options->data);
+    fl_tell(options->note, options->data, "%d %s%s: %s", n, kind->noun, n == 1 ? "" : "s", c.path);
     return true;
 }
 

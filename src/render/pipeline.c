@@ -1,4 +1,5 @@
 /* The whole render: run() has its stages in order, render_frame() those of a frame. */
+#include "base/error.h"
 #include "base/memory.h"
 #include "base/schedule.h"
 #include "inspect/ebsynth.h"
@@ -139,8 +140,7 @@ static bool note_obstacles(Pipeline *pipeline, GError **error)
         g_propagate_error(error, g_steal_pointer(&obstacle));
         return false;
     }
-    if (o->note)
-        o->note(obstacle->message, o->data);
+    fl_tell(o->note, o->data, "%s", obstacle->message);
     return true;
 }
 

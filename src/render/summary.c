@@ -1,14 +1,13 @@
 #include "render/summary.h"
 
+#include "base/error.h"
 #include "inspect/report.h"
 #include "render/loop.h"
 #include <string.h>
 
 static void send_note(const FlPlan *plan, const char *line)
 {
-    const FlRenderOptions *o = &plan->options;
-    if (o->note)
-        o->note(line, o->data);
+    fl_tell(plan->options.note, plan->options.data, "%s", line);
 }
 
 static const char *written(const FlPlan *plan)
