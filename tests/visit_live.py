@@ -40,12 +40,6 @@ def config():
     return browser.ask('byId("config").textContent')
 
 
-def says(key, value, section):
-    """Whether the config says so in a section, and the film is painted by it."""
-    have = f'(live.settings["{section}"] || {{}})["{key}"] === {value}'
-    return until(f"{have} && live.step === 'done' && live.from > 0")
-
-
 REFINED = ("live.pending === 0 && live.state.generation >= live.expected && frames.length && "
            "frames.every((f) => f.generation === live.generation && f.level === REFINED)")
 DRAWN = "frames.filter((f) => f.images.after && f.images.map).length === 6"
@@ -117,12 +111,15 @@ tell("and one that no style can have", until(note + ".includes('0x0')"))
 tell("which change nothing", done(section, "style-scale", '"0.7"') and pixels(3) == old)
 browser.mouse(place(control("tint", ".reset")))
 tell("what was chosen is given back", done(section, "tint", "undefined") and "tint" not in config())
+browser.ask('document.querySelector("#regions input").click(), byId("mode").value = "onion", zoom(), play(true)')
 browser.mouse(place('byId("everywhere")'))
 browser.mouse(place(control("frames")))
 browser.type("2-5")
 browser.key("Enter")
 tell("a range of frames is painted", done("project", "frames", '"2-5"') and
      browser.ask('frames.map((f) => f.number).join() === "2,3,4,5"'))
+tell("which plays, although it had no pictures at first", until("state.at === 1") and until("state.at === 2"))
+browser.ask('toggleAll(true), play(false), byId("mode").value = "alone", zoom()')
 browser.ask('byId("view").focus(), document.activeElement.blur(), show(0)')
 browser.key("ArrowRight")
 tell("a key steps", browser.ask("shown[state.at].number") == 3)

@@ -52,8 +52,6 @@ static void choose_size(FlReport *report)
     report->every = MAX((int)ceil(n / most), 1);
 }
 
-static void write_film(const FlReport *report);
-
 static void write_part(FILE *out, FlPagePart part)
 {
     g_autoptr(GBytes) text = fl_page_part(part);
@@ -70,7 +68,6 @@ static bool begin(FlReport *report, const char *folder, GError **error)
         return false;
     report->out = report->file.stream;
     write_part(report->out, FL_PAGE_HEAD);
-    write_film(report);
     return true;
 }
 
@@ -266,7 +263,7 @@ bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **erro
 
 /* ---- the whole ------------------------------------------------------------------------------ */
 
-static void write_region(const FlReport *report, int r, bool finished)
+static void write_region(const FlReport *report, int r)
 {
     FILE *out = report->out;
     const FlPlan *plan = report->plan;
@@ -290,20 +287,19 @@ static void write_region(const FlReport *report, int r, bool finished)
         fputs(",style:", out);
         fl_script_string(out, style);
         fputs(",change:", out);
-        fl_script_number(out,
-                         finished ? fl_flicker_of_exemplar(plan->painted[p].style->exemplar) : NAN);
+        fl_script_number(out, fl_flicker_of_exemplar(plan->painted[p].style->exemplar));
         fputs(",seconds:", out);
-        fl_script_number(out, finished ? report->painter_seconds[p] : NAN);
+        fl_script_number(out, report->painter_seconds[p]);
     }
     fputs("}", out);
 }
 
-static void write_regions(const FlReport *report, bool finished)
+static void write_regions(const FlReport *report)
 {
     fputs("regions:[", report->out);
     for (int r = 0; r < fl_drawing_regions(report->plan->drawing); r++) {
         fputs(r > 0 ? "," : "", report->out);
-        write_region(report, r, finished);
+        write_region(report, r);
     }
     fputs("]", report->out);
 }
@@ -325,8 +321,7 @@ static bool write_uses(const FlReport *report, GError **error)
     return true;
 }
 
-/* Writes the facts that are known before the first frame. */
-static void write_film(const FlReport *report)
+static bool write_film(const FlReport *report, GError **error)
 {
     FILE *out = report->out;
     const FlPlan *plan = report->plan;
@@ -340,25 +335,17 @@ static void write_film(const FlReport *report)
     fputs(",paper:", out);
     fl_script_colour(out, report->background->flat);
     fprintf(out,
-            ",width:%d,height:%d,drawn:%d,shown:[%d,%d],every:%d,total:%d,measured:true,"
+            ",width:%d,height:%d,drawn:%d,shown:[%d,%d],every:%d,measured:true,"
             "transparent:%s,fps:",
             plan->width, plan->height, fl_drawing_width(plan->drawing), report->width,
-            report->height, report->every, fl_drawing_frames(plan->drawing),
-            report->background->none ? "true" : "false");
+            report->height, report->every, report->background->none ? "true" : "false");
     fl_script_number(out, fps > 0 ? fps : 24);
-    fputs(",peak:null,uses:[],", out);
-    write_regions(report, false);
-    fputs("};</script>\n", out);
-}
-
-static bool write_results(const FlReport *report, GError **error)
-{
-    fputs("<script>Object.assign(film,{peak:", report->out);
-    fl_script_number(report->out, fl_peak_mib());
-    fputs(",", report->out);
-    write_regions(report, true);
+    fputs(",peak:", out);
+    fl_script_number(out, fl_peak_mib());
+    fputs(",", out);
+    write_regions(report);
     const bool done = write_uses(report, error);
-    fputs("});</script>\n", report->out);
+    fputs("};</script>\n", out);
     return done;
 }
 
@@ -366,7 +353,7 @@ bool fl_report_finish(FlReport *report, GError **error)
 {
     if (!report)
         return true;
-    if (!write_results(report, error))
+    if (!write_film(report, error))
         return false;
     write_part(report->out, FL_PAGE_REST);
     return fl_atomic_commit(&report->file, error);
