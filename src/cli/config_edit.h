@@ -13,9 +13,9 @@ typedef char *(*FlConfigValue)(const char *section, const char *key, const char 
 char *fl_config_edit_map(const char *text, FlConfigValue map, void *data);
 
 /**
- * The text with a key set; "" removes it. A section that is missing is added at the end.
+ * The text with a key set; "" removes the key. A missing section is added at the end.
  *
- * No argument has a line feed, and the section no bracket. Returns: to be freed.
+ * No argument contains a line feed, and the section contains no bracket. Returns: to be freed.
  */
 char *fl_config_edit_set(const char *text, const char *section, const char *key, const char *value);
 

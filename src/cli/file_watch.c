@@ -167,7 +167,7 @@ static gboolean on_tick(void *data)
     return G_SOURCE_CONTINUE; // the loop looks
 }
 
-/* The writer that opened the file no longer writes to it, or was killed. */
+/* Returns: true if the file's writer has paused for long, or was killed. */
 static gboolean is_abandoned(void *path, void *time, void *data)
 {
     return g_get_monotonic_time() - *(gint64 *)time > (gint64)ABANDONED_MS * 1000;

@@ -10,7 +10,7 @@ enum {
     PING_S = 20,
 };
 
-/* What a page has of a frame. */
+/* Parts of a frame that a page has. */
 enum { HAS_DRAFT = 1, HAS_FRAME = 2, HAS_DRAWING = 4 };
 
 typedef struct Client {
@@ -22,7 +22,7 @@ typedef struct Client {
     uint8_t *has;  // by frame
     char *region;  // of samples; "": all
     int sampled;   // the frame of samples
-    guint samples; // that it has; all of them: none is wanted
+    guint samples; // number that it has; all of them if it has not asked
 } Client;
 
 struct FlLiveClients {
@@ -74,12 +74,12 @@ bool fl_live_clients_stuck(const FlLiveClients *clients)
 /* ---- the next job -----------------------------------------------------------------------------
  */
 
-/* The first frame from `start` on, in a loop, that lacks something; -1: none. */
-static int find_lack(const Client *client, int start, int what)
+/* The first frame from `start` on, in a loop, that lacks one of the parts; -1: no frame does. */
+static int find_lack(const Client *client, int start, int parts)
 {
     const int n = client->clients->n_frames;
     for (int k = 0; k < n; k++)
-        if (!(client->has[(start + k) % n] & what))
+        if (!(client->has[(start + k) % n] & parts))
             return (start + k) % n;
     return -1;
 }
@@ -134,7 +134,7 @@ static void go_on(FlLiveClients *clients)
         }
 }
 
-/* ---- what pages say ---------------------------------------------------------------------------
+/* ---- messages of pages --------------------------------------------------------------------------
  */
 
 static int number_after(const char *text, const char *word, int most)
@@ -228,15 +228,12 @@ void fl_live_clients_begin(FlLiveClients *clients, int generation)
 
 static void take_facts(FlLiveClients *clients, const FlLiveJob *job)
 {
-    int n = 0;
+    const bool anew = job->reread || job->n_frames != clients->n_frames;
     g_free(clients->facts);
     clients->facts = g_strdup_printf("{\"film\":%s}", job->facts);
-    const char *list = strstr(job->facts, "\"numbers\":[");
-    for (const char *at = list; at && *at != ']'; at++)
-        n += *at == ',' || *at == '[';
-    for (guint k = 0; k < clients->all->len && (job->reread || n != clients->n_frames); k++)
-        forget(clients->all->pdata[k], n);
-    clients->n_frames = n;
+    for (guint k = 0; k < clients->all->len && anew; k++)
+        forget(clients->all->pdata[k], job->n_frames);
+    clients->n_frames = job->n_frames;
     fl_live_clients_say(clients, clients->facts);
 }
 
@@ -244,16 +241,16 @@ static void take_facts(FlLiveClients *clients, const FlLiveJob *job)
 static void give(Client *client, const FlLiveJob *job)
 {
     const bool sample = job->work == FL_LIVE_SAMPLE;
-    const int what = job->work == FL_LIVE_FRAME ? HAS_FRAME | HAS_DRAFT
-                     : job->with_drawing        ? HAS_DRAFT | HAS_DRAWING
-                                                : HAS_DRAFT;
+    const int parts = job->work == FL_LIVE_FRAME ? HAS_FRAME | HAS_DRAFT
+                      : job->with_drawing        ? HAS_DRAFT | HAS_DRAWING
+                                                 : HAS_DRAFT;
     if (sample ? client != job->asker || job->style != (int)client->samples
-               : client->hidden || client->credit < LEAST || !(what & ~client->has[job->frame]))
+               : client->hidden || client->credit < LEAST || !(parts & ~client->has[job->frame]))
         return;
     if (sample)
         client->samples++;
     else
-        client->has[job->frame] |= (uint8_t)what;
+        client->has[job->frame] |= (uint8_t)parts;
     if (job->work == FL_LIVE_DRAFT)
         client->next = (job->frame + 1) % client->clients->n_frames;
     for (guint k = 0; k < job->pictures->len; k++) {

@@ -14,10 +14,10 @@ typedef struct Choice {
 
 struct FlLiveConfig {
     const FlArgs *args;
-    char *base;         // the file, with what the command line says
+    char *base;         // the file with the options of the command line
     GPtrArray *choices; // Choice
     GPtrArray *kept;    // the choices that are known to be good
-    char *text;         // both
+    char *text;         // base with the choices
 };
 
 static void choice_free(void *data)
@@ -76,7 +76,7 @@ static char *make_portable(const char *section, const char *key, const char *val
     return option ? absolute(option, value, NULL) : g_strdup(value);
 }
 
-/* Beside the drawing, where the program mentions it. */
+/* The config of that name is mentioned by the program if it lies beside the drawing. */
 static char *path_beside(const char *input)
 {
     g_autofree char *folder =
@@ -245,7 +245,7 @@ bool fl_live_config_revert(FlLiveConfig *config)
     return strcmp(before, config->text) != 0;
 }
 
-/* Whether the value is one of the option, as far as this is known without the drawing. */
+/* Checks the value without the drawing. */
 static bool check_value(const FlOption *option, const char *value, GError **error)
 {
     const char *const none[] = {NULL};

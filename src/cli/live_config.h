@@ -17,28 +17,28 @@ FlLiveConfig *fl_live_config_new(const FlArgs *args, GError **error);
 bool fl_live_config_reload(FlLiveConfig *config, GError **error);
 
 /**
- * Makes a choice: a key of the table of options in "project", "defaults" or "region NAME"; ""
- * removes it. Returns: false with FL_ERROR_USAGE, which says what was expected.
+ * Makes a choice: the value of an option in "project", "defaults" or "region NAME"; "" removes the
+ * choice. Returns: false with FL_ERROR_USAGE, which names the expected values.
  */
 bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char *key,
                            const char *value, GError **error);
 
-/** The file to keep. Borrowed until the next change. */
+/** The text of the config. Borrowed until the next change. */
 const char *fl_live_config_text(const FlLiveConfig *config);
 
 /**
- * Writes it to the user's config file, or if there is none as fluidy-svg.conf beside the drawing,
- * with the paths of styles as they read from there.
+ * Writes the text to the user's config file; without one, to fluidy-svg.conf beside the drawing,
+ * with absolute paths of styles.
  *
- * replace: a file that is there. Returns: its path, to be freed; NULL with FL_ERROR_EXISTS, or an
- * error of the file.
+ * replace: an existing file is replaced. Returns: the file's path, to be freed; NULL with
+ * FL_ERROR_EXISTS or an error of the file.
  */
 char *fl_live_config_save(const FlLiveConfig *config, bool replace, GError **error);
 
 /** The choices so far are good ones. */
 void fl_live_config_keep(FlLiveConfig *config);
 
-/** Takes back the choices since fl_live_config_keep(). Returns: false if there were none. */
+/** Takes back the choices since fl_live_config_keep(). Returns: true if the text has changed. */
 bool fl_live_config_revert(FlLiveConfig *config);
 
 /** Appends {"section":{"key":"value",…},…}. */

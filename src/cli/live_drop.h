@@ -10,8 +10,8 @@ typedef struct FlLiveDrop FlLiveDrop;
 /** Frees *drop and begins anew. */
 void fl_live_drop_begin(FlLiveDrop **drop);
 
-/** Writes a file, of a name without folders: a drawing or a style sheet. drop may be NULL: nothing
- * was begun. Returns: false with FL_ERROR_INPUT, FL_ERROR_LIMIT or FL_ERROR_OUTPUT. */
+/** Writes a drawing or a style sheet; the name has no folders. drop may be NULL, which is an
+ * error. Returns: false with FL_ERROR_INPUT, FL_ERROR_LIMIT or FL_ERROR_OUTPUT. */
 bool fl_live_drop_add(FlLiveDrop *drop, const char *name, const char *data, gsize bytes,
                       GError **error);
 

@@ -204,7 +204,6 @@ static char *facts_of(FlLiveFilm *film, const FlFilmFrame *frame)
         return NULL;
     GString *json = g_string_new("{");
     fl_json_text(json, "name", info->name);
-    fl_json_text(json, "version", fl_version());
     fl_json_number(json, "width", width, true);
     fl_json_number(json, "height", height, true);
     fl_json_number(json, "fps", info->fps, true);
@@ -235,6 +234,7 @@ static bool make_draft(FlLiveFilm *film, GError **error)
         g_free(film->facts);
         film->facts = g_strdup(facts);
         job->facts = g_steal_pointer(&facts);
+        job->n_frames = info->n_frames;
     }
     const FlFilmFrame *drawing =
         job->with_drawing ? fl_film_drawing(film->film, job->frame, error) : NULL;
@@ -369,7 +369,7 @@ void fl_live_film_free(FlLiveFilm *film)
     fl_live_film_ask(film, &(FlLiveJob){.generation = -1});
     g_thread_join(film->thread);
     while (g_main_context_iteration(NULL, FALSE))
-        continue; // what the thread has said
+        continue; // the last calls of the thread
     g_async_queue_unref(film->jobs);
     g_ptr_array_unref(film->styles);
     g_strfreev(film->inputs);

@@ -6,7 +6,7 @@
 
 typedef enum FlLiveWork {
     FL_LIVE_DRAFT,  // a frame's draft
-    FL_LIVE_FRAME,  // a frame as the command writes it
+    FL_LIVE_FRAME,  // a frame, equal to the command's
     FL_LIVE_SAMPLE, // a draft with a style
 } FlLiveWork;
 
@@ -28,9 +28,10 @@ typedef struct FlLiveJob {
     int style;           // of a sample: its index in fl_style_list()
     void *asker;         // for the caller
     int generation;      // of the settings
-    GError *error;       // NULL: the results are there
+    GError *error;       // NULL if the job succeeded
     bool reread;         // the drawing was read
     char *facts;         // of the film, a JSON object; NULL: as before
+    int n_frames;        // of the film, with facts
     GPtrArray *pictures; // GBytes: six numbers of 32 bits, little endian (kind, generation, frame
                          // or style, width, height, 0), then width * height * 4 straight sRGBA
 } FlLiveJob;
@@ -46,7 +47,7 @@ typedef struct FlLiveCalls {
     void *data;
 } FlLiveCalls;
 
-/** Starts the thread; args must outlive it. */
+/** Starts the thread. The film borrows args. */
 FlLiveFilm *fl_live_film_new(const FlArgs *args, const FlLiveCalls *calls);
 
 /**
@@ -58,7 +59,7 @@ FlLiveFilm *fl_live_film_new(const FlArgs *args, const FlLiveCalls *calls);
 void fl_live_film_set(FlLiveFilm *film, int generation, const char *const *inputs, bool anew,
                       const char *path, const char *text);
 
-/** Hands a job over; each comes back by calls.done, whatever becomes of it. */
+/** Adds a copy of the job; calls.done gets the result or the error. */
 void fl_live_film_ask(FlLiveFilm *film, const FlLiveJob *job);
 
 void fl_live_job_free(FlLiveJob *job);

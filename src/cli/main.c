@@ -236,7 +236,7 @@ static void note_change(Reporter *reporter)
 }
 
 /* Paints. If this fails because a file is changing, the next round starts soon.
- * Returns: the status to end with; -1: go on. */
+ * Returns: the status of the program; -1: the next round follows. */
 static int watch_round(FlArgs *args, Reporter *reporter)
 {
     g_autoptr(GError) error = NULL;
@@ -379,10 +379,10 @@ static void fill_standard_streams(void)
         close(fd);
 }
 
-/* glibc gives every thread a heap of its own, and planes that one of them has freed are of no use
- * to the others: memory grew with the film. So all share one, unless planes are small and threads
- * would mostly wait for it: see fl_memory_separate_heaps(). Of the one heap glibc would return to
- * the system what a frame has freed, only to take it again for the next. */
+/* glibc gives every thread its own heap, and no thread can use the planes that another one has
+ * freed: memory grew with the film. So all threads share a heap, unless planes are small and
+ * threads would mostly wait for each other: see fl_memory_separate_heaps(). glibc would return the
+ * freed memory of each frame to the system and ask for it again in the next frame. */
 static void share_one_heap(void)
 {
 #ifdef __GLIBC__

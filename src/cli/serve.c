@@ -238,7 +238,7 @@ static GHashTable *form_of(SoupServerMessage *message)
     return soup_form_decode(text);
 }
 
-/* section, key, value: a choice. The answer is the generation of the settings with it. */
+/* A choice has section, key and value. The answer is the generation of the new settings. */
 static void post_choice(Live *live, SoupServerMessage *message, GHashTable *query)
 {
     g_autoptr(GHashTable) form = form_of(message);
@@ -276,7 +276,7 @@ static void post_save(Live *live, SoupServerMessage *message, GHashTable *query)
         refuse(message, exists ? SOUP_STATUS_CONFLICT : SOUP_STATUS_BAD_REQUEST, error->message);
         return;
     }
-    watch_anew(live); // which has not seen this change
+    watch_anew(live); // so the saved file does not count as changed
     answer(message, "text/plain; charset=utf-8", path, strlen(path));
 }
 
@@ -387,7 +387,7 @@ static void on_page(SoupServer *server, SoupServerMessage *message, const char *
         soup_websocket_connection_close(socket, SOUP_WEBSOCKET_CLOSE_POLICY_VIOLATION, NULL);
         return;
     }
-    if (fl_live_clients_stuck(live->clients)) // perhaps what was wrong is mended
+    if (fl_live_clients_stuck(live->clients)) // the cause may be mended
         paint_anew(live, false);
     g_autofree char *state = state_of(live);
     fl_live_clients_add(live->clients, socket, state);
@@ -395,7 +395,7 @@ static void on_page(SoupServer *server, SoupServerMessage *message, const char *
 
 /* ---- the whole ------------------------------------------------------------------------------ */
 
-/* Options that name outputs, or are for a render of its own. */
+/* Refuses options that name outputs or choose another task. */
 static bool check_options(const FlArgs *args, GError **error)
 {
     static const char *const others[] = {"output", "report",  "layers", "paint",  "stats",
@@ -408,7 +408,7 @@ static bool check_options(const FlArgs *args, GError **error)
             continue;
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "--serve and --%s contradict each other; the page shows the film and writes "
-                    "nothing",
+                    "no frames",
                     option->name);
         return false;
     }
@@ -476,7 +476,7 @@ static bool open_window(Live *live, GError **error)
     return live->window;
 }
 
-/* Reads a few frames, which shows what is wrong with the command line. */
+/* Reads a frame, which finds mistakes in the command line. */
 static bool prepare(Live *live, GError **error)
 {
     FlRenderOptions few = live->args->render;

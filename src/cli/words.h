@@ -24,9 +24,9 @@ void fl_words_drop_separator(char **words);
 
 /**
  * Has OpenMP's threads sleep while they wait, unless the environment says otherwise: busy waiting
- * takes the processors from other jobs. gcc's libgomp reads the policy before main() and has no
- * function for it, so the program executes itself again; where that fails, threads wait busily. To
- * be called first of all.
+ * takes the processors from other jobs. gcc's libgomp reads the policy before main() and no
+ * function can change it, so the program executes itself again; if that fails, threads wait busily.
+ * Call this before all other functions.
  */
 void fl_wait_asleep(char **argv);
 
