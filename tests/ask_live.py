@@ -61,6 +61,13 @@ tell("a file that is no drawing is refused", ask("POST", root + "drop?name=a.sh&
 many = [http.client.HTTPConnection(address.hostname, address.port, timeout=20) for _ in range(100)]
 for connection in many:
     connection.connect()
+answers = 0
+for connection in many:
+    try:
+        connection.request("GET", root)
+        answers += connection.getresponse().status == 200
+    except OSError:  # the server has closed it
+        pass
 for connection in many:
     connection.close()
 status = 0
@@ -69,5 +76,5 @@ while status != 200:  # until the server has seen that they are closed
         status = ask("GET", root)[0]
     except OSError:
         time.sleep(0.1)
-tell("a hundred connections are too many, and do no harm", status == 200)
+tell("not all of a hundred connections at once are answered; the others do no harm", 0 < answers < 100 and status == 200)
 tell("none of them changed the config", ask("GET", root + "config")[1].count("=") == 2)

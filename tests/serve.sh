@@ -20,8 +20,10 @@ fi
 # serves ARGUMENT...: in the background, as process $job; $address is that of its page.
 serves() {
     rm -f said
+    set -m # the processes that it starts are of its group
     "$program" film --cache kept "$@" >said 2>told &
     job=$!
+    set +m
     until [ -s said ]; do
         kill -0 $job 2>/dev/null || return 1
         sleep 0.05
@@ -29,10 +31,13 @@ serves() {
     address=$(cat said)
 }
 
-# ends SIGNAL: the server does with status 0, and so does all that it has made.
+# ends SIGNAL: the server ends with status 0, without its temporary files and its processes.
 ends() {
     kill -"$1" $job
-    wait $job && [ -z "$(ls -A tmp)" ] && ! pgrep -P $job >/dev/null
+    wait $job && [ -z "$(ls -A tmp)" ] || return 1
+    until ! pgrep -g $job -r S,R,D >/dev/null; do
+        sleep 0.05
+    done
 }
 
 "$program" --serve no-such-folder >out 2>err
@@ -40,14 +45,14 @@ ends() {
 result $? 'input that is not there is one line'
 "$program" film --serve -o 'out_%d.png' 2>err
 [ $? = 2 ] && says '--serve and --output contradict each other'
-result $? 'an output is refused, since the page writes none'
+result $? 'an output is refused, since the page writes no frames'
 "$program" film --serve=70000 2>err
 [ $? = 2 ] && says '“70000” is not a port from 0 to 65535'
-result $? 'so is what is no port'
+result $? 'a port above 65535 is refused'
 
 "$program" film --serve -c <(echo) 2>err
 [ $? = 2 ] && says 'expected a file, which can be read again'
-result $? 'and a config that cannot be read again'
+result $? 'a config that cannot be read twice is refused'
 
 if ! command -v python3 >/dev/null; then
     skip 'the page is served' 'no python3'
@@ -81,12 +86,12 @@ if [ -z "$browser" ]; then
 else
     visit visit_live.py "$browser" "$address" "$folder/profile" film "$program" --cache off
     grep -q '^# mine' kept.conf && grep -q '^# below' kept.conf && grep -q '^layers = ' kept.conf
-    result $? 'and is her own, with what she wrote in it'
+    result $? 'the config keeps the comments and keys of its author'
 fi
 [ ! -e layers ] && [ ! -e fluidy ] && cmp -s one.conf <(printf '# mine\n[project]\nlayers = layers/{region}_%%d.png\n\n[defaults]\nstyle = ./ink\n# below\n')
-result $? 'the server writes no outputs, and leaves the config alone'
+result $? 'the server writes no outputs and does not change the config'
 ends INT
-result $? 'SIGINT ends it with status 0, and leaves nothing'
+result $? 'SIGINT ends it with status 0, without leftovers'
 serves -s "$style" --serve
 ends TERM
 result $? 'so does SIGTERM while it paints'
