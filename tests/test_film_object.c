@@ -299,6 +299,24 @@ static void a_config_of_text_reads_no_drawing_anew(void)
     g_assert_true(g_str_has_prefix(error->message, "film.conf:2: "));
 }
 
+static void a_config_file_is_read_again(void)
+{
+    g_autoptr(Case) test = case_new();
+    g_autoptr(GError) error = NULL;
+    g_autofree char *path = g_build_filename(test->folder, "film.conf", NULL);
+    uint8_t *frame[2];
+    const char *const texts[] = {"[defaults]\ntint = fill\n", "[defaults]\ntint = #11aa55\n"};
+    for (int k = 0; k < 2; k++) {
+        g_assert_true(g_file_set_contents(path, texts[k], -1, NULL));
+        fl_film_set_config(test->film, path, NULL, &error);
+        g_assert_no_error(error);
+        frame[k] = frame_of(test->film, 3);
+    }
+    g_assert_true(memcmp(frame[0], frame[1], 4 * WIDTH * HEIGHT) != 0);
+    g_free(frame[0]);
+    g_free(frame[1]);
+}
+
 static bool count_down(void *data)
 {
     return g_atomic_int_dec_and_test((int *)data);
@@ -386,6 +404,7 @@ int main(int argc, char **argv)
     TEST(two_films_in_two_threads);
     TEST(drafts_come_at_once_and_leave_frames_alone);
     TEST(a_config_of_text_reads_no_drawing_anew);
+    TEST(a_config_file_is_read_again);
     TEST(a_frame_can_be_stopped_within);
     TEST(a_stop_before_the_paint_keeps_the_drawing);
     TEST(regions_and_drawings_are_told);

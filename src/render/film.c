@@ -154,7 +154,8 @@ bool fl_film_set_config(FlFilm *film, const char *path, const char *text, GError
     g_autoptr(FlConfig) config = text ? fl_config_load(path, &given, error) : NULL;
     if (text && !config)
         return false;
-    film->options.config = keep(film, path);
+    // another pointer than before, so that the plan reads the file again
+    film->options.config = path ? g_string_chunk_insert(film->texts, path) : NULL;
     film->options.config_text = keep(film, text);
     mark_changed(film);
     return true;
