@@ -12,11 +12,11 @@ G_BEGIN_DECLS
 /**
  * A drawing that is painted frame by frame, in any order, while its options change.
  *
- * What a change does not touch is kept: after another "tint" or "paper" frames are only composed
- * again, after another "style" of a region that region alone is painted again, and after a change
- * of anything about paint the drawing is not read again. Painted pictures stay in memory, as many
- * as 16 films have, and up to 512 MiB, or an eighth of the limit ‘memory’, of frames and of drafts
- * each, so that a choice that is taken back shows the earlier pictures at once.
+ * Another "tint" or "paper" only composes the frames again; another "style" of a region only paints
+ * that region again; no option of the paint reads the drawing again. Painted pictures stay in
+ * memory, as many as 16 films have, and up to 512 MiB, or an eighth of the limit ‘memory’, of
+ * frames and of drafts each, so that a choice that is taken back shows the earlier pictures at
+ * once.
  *
  * Threads: one film belongs to one thread at a time; several threads may have a film each. While
  * the process has a single thread, drawings are read and drawn in child processes, which are
@@ -50,10 +50,10 @@ FL_API bool fl_film_set(FlFilm *film, const char *region, const char *name, cons
 
 /**
  * Takes the config of a text, whose path gives the folder of its paths and a name for messages; no
- * file is read. What does not differ from the config before is kept.
+ * file is read. Settings that equal those of the earlier config keep their paint.
  *
- * text: as in fluidy-svg.conf(5), copied; NULL: the file `path`, or none. Returns: false with
- * FL_ERROR_USAGE; the config before then stays.
+ * text: as in fluidy-svg.conf(5), copied; NULL: the file `path`, which is read again; both NULL: no
+ * config. Returns: false with FL_ERROR_USAGE; the earlier config then stays.
  */
 FL_API bool fl_film_set_config(FlFilm *film, const char *path, const char *text, GError **error);
 
