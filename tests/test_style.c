@@ -13,12 +13,15 @@
 enum { WIDTH = 48, HEIGHT = 32, FRAMES = 3 };
 static const uint8_t PAPER[3] = {240, 236, 228}, PAINT[3] = {60, 90, 150};
 
-/* A folder under the temporary one, empty but for `frames`; to be freed. */
+/* Holds all folders of this program, so that no stranger's style lies beside them. */
+static char *root;
+
+/* A folder under the root, empty but for `frames`; to be freed. */
 static char *new_folder(void)
 {
-    g_autofree char *folder = g_dir_make_tmp("fluidy-style-XXXXXX", NULL);
+    g_autofree char *folder = g_build_filename(root, "fluidy-style-XXXXXX", NULL);
+    g_assert_nonnull(g_mkdtemp(folder));
     g_autofree char *frames = g_build_filename(folder, "frames", NULL);
-    g_assert_nonnull(folder);
     g_assert_cmpint(g_mkdir(frames, 0755), ==, 0);
     return g_steal_pointer(&folder);
 }
@@ -326,6 +329,8 @@ static void a_picture_shrinks_to_the_means_of_its_areas(void)
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
+    root = g_dir_make_tmp("fluidy-styles-XXXXXX", NULL);
+    g_assert_nonnull(root);
     g_test_add_func("/style/frames-alone-are-a-style", frames_alone_are_a_style);
     g_test_add_func("/style/style-ini-values-are-taken", style_ini_values_are_taken);
     g_test_add_func("/style/a-mistake-in-style-ini-is-told-with-its-line",
@@ -349,5 +354,8 @@ int main(int argc, char **argv)
                     a_style_is_found_by_name_in_fluidy_styles);
     g_test_add_func("/style/a-picture-shrinks-to-the-means-of-its-areas",
                     a_picture_shrinks_to_the_means_of_its_areas);
-    return g_test_run();
+    const int status = g_test_run();
+    remove_folder(root);
+    g_free(root);
+    return status;
 }
