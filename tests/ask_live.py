@@ -34,6 +34,15 @@ def choose(headers=own, section="defaults", key="carry", value="0.5"):
     return ask("POST", root + "choice", headers, section=section, key=key, value=value)[0]
 
 
+def is_open(connection):
+    """True if the server has not closed a connection on which no request was sent."""
+    connection.setblocking(False)
+    try:
+        return connection.recv(1) != b""
+    except OSError as error:
+        return isinstance(error, BlockingIOError)
+
+
 def tell(sentence, good):
     print(("ok - " if good else "not ok - ") + sentence)
 
@@ -58,16 +67,11 @@ tell("the page sees pictures", "state" in look())
 tell("that of another site does not", "state" not in look(Origin="http://evil.example"))
 tell("a file that is no drawing is refused", ask("POST", root + "drop?name=a.sh&first=1&last=1", own, x="y")[0] == 400 and
      ask("POST", root + "drop?name=../a.svg&first=1&last=1", own, x="y")[0] == 400)
-many = [http.client.HTTPConnection(address.hostname, address.port, timeout=20) for _ in range(100)]
-for connection in many:
-    connection.connect()
-answers = 0
-for connection in many:
-    try:
-        connection.request("GET", root)
-        answers += connection.getresponse().status == 200
-    except OSError:  # the server has closed it
-        pass
+many = [socket.create_connection((address.hostname, address.port), 20) for _ in range(100)]
+end = time.monotonic() + 20
+while sum(map(is_open, many)) > 64 and time.monotonic() < end:
+    time.sleep(0.05)
+few = sum(map(is_open, many)) <= 64
 for connection in many:
     connection.close()
 status = 0
@@ -76,5 +80,5 @@ while status != 200:  # until the server has seen that they are closed
         status = ask("GET", root)[0]
     except OSError:
         time.sleep(0.1)
-tell("not all of a hundred connections at once are answered; the others do no harm", 0 < answers < 100 and status == 200)
+tell("of a hundred connections at most 64 stay open, and the others do no harm", few and status == 200)
 tell("none of them changed the config", ask("GET", root + "config")[1].count("=") == 2)
