@@ -5,10 +5,13 @@ export gives each frame a page of its own, so that a drawing slides. The program
 painted frames come back as an image plane before the camera or into the compositor.
 """
 import json
+import math
 import os
+import re
 import shlex
 import subprocess
 import threading
+from collections import namedtuple
 from xml.sax.saxutils import quoteattr
 
 import bpy
@@ -30,10 +33,66 @@ STYLES = ['watercolour', 'ink', 'bloom', 'charcoal', 'wash', 'two-pigments', 'go
 LINE_M = 0.001  # world size of a line's thickness of one
 
 
-# ---- Grease Pencil to SVG ------------------------------------------------------------------------
+# ---- what Grease Pencil holds, of either age -------------------------------------------------------
+# Blender up to 4.2 keeps strokes as GPENCIL, later ones as GREASEPENCIL with radii in metres.
+
+Point = namedtuple('Point', 'co radius opacity mix')  # radius in metres, or px if negative; mix: RGBA, A its share
+Stroke = namedtuple('Stroke', 'points closed material mix fill_opacity uv flat')
+Layer = namedtuple('Layer', 'name matrix opacity tint blend masks lights strokes')  # masks: (name, inverted)
+
+
+def material_of(thing, index):
+    slot = thing.material_slots[index].material if 0 <= index < len(thing.material_slots) else None
+    return slot.grease_pencil if slot and slot.grease_pencil and not slot.grease_pencil.hide else None
+
+
+def masks_of(layer, used):
+    return [(mask.name, mask.invert) for mask in layer.mask_layers if not mask.hide] if used else []
+
+
+def old_layers(thing):
+    pencil = thing.data
+    for layer in pencil.layers:
+        metres = LINE_M * pencil.pixel_factor if pencil.stroke_thickness_space == 'WORLDSPACE' else -1
+        strokes = []
+        for stroke in layer.active_frame.strokes if layer.active_frame else []:
+            width = max(stroke.line_width + layer.line_change, 1) * metres / 2
+            points = [Point(p.co, width * p.pressure, p.strength, p.vertex_color) for p in stroke.points]
+            strokes.append(Stroke(points, stroke.use_cyclic, material_of(thing, stroke.material_index),
+                                  stroke.vertex_color_fill, 1, [tuple(p.uv_fill) for p in stroke.points],
+                                  stroke.start_cap_mode == 'FLAT'))
+        yield layer.hide, Layer(layer.info, layer.matrix_layer.copy(), layer.opacity,
+                                (*layer.tint_color, layer.tint_factor), layer.blend_mode,
+                                masks_of(layer, layer.use_mask_layer), layer.use_lights, strokes)
+
+
+def new_layers(thing):
+    for layer in thing.data.layers:
+        frame = layer.current_frame()
+        matrix = layer.matrix_local
+        if layer.parent:
+            matrix = thing.matrix_world.inverted() @ layer.parent.matrix_world @ layer.matrix_parent_inverse @ matrix
+        strokes = []
+        for stroke in frame.drawing.strokes if frame else []:
+            points = [Point(p.position, max(p.radius + layer.radius_offset, 0), p.opacity, p.vertex_color)
+                      for p in stroke.points]
+            strokes.append(Stroke(points, stroke.cyclic, material_of(thing, stroke.material_index),
+                                  stroke.fill_color, stroke.fill_opacity, None, stroke.start_cap == 1))
+        yield layer.hide, Layer(layer.name, matrix, layer.opacity, (*layer.tint_color, layer.tint_factor),
+                                layer.blend_mode, masks_of(layer, layer.use_masks), layer.use_lights, strokes)
+
+
+LAYERS = {'GPENCIL': old_layers, 'GREASEPENCIL': new_layers}
+
+
+# ---- colours, in linear light as Blender has them ---------------------------------------------------
+
+def mixed(colour, other, share):
+    return [a + (b - a) * share for a, b in zip(colour[:3], other[:3])]
+
 
 def srgb(linear):
-    """A linear colour of a material as #rrggbb."""
+    """A linear colour as #rrggbb."""
     levels = []
     for value in linear[:3]:
         value = min(max(value, 0), 1)
@@ -42,14 +101,22 @@ def srgb(linear):
     return '#%02x%02x%02x' % tuple(levels)
 
 
+def mean(values):
+    values = [tuple(value) for value in values]
+    return [sum(each) / len(values) for each in zip(*values)]
+
+
+# ---- Grease Pencil to SVG ------------------------------------------------------------------------
+
 class Page:
-    """The picture that the camera takes, in pixels."""
+    """The picture that the camera takes, in pixels, and what of the drawing SVG cannot say."""
 
     def __init__(self, scene):
         render = scene.render
         self.scene, self.camera = scene, scene.camera
         self.width = render.resolution_x * render.resolution_percentage // 100
         self.height = render.resolution_y * render.resolution_percentage // 100
+        self.defs, self.names, self.lost = [], {}, set()
 
     def place(self, point):
         """x, y and depth of a point of the world; None behind the camera."""
@@ -57,82 +124,219 @@ class Page:
         return (at.x * self.width, (1 - at.y) * self.height, at.z) if at.z > 0 else None
 
     def px_per_m(self, depth):
-        left, right = self.camera.data.view_frame(scene=self.scene)[2].x, \
-            self.camera.data.view_frame(scene=self.scene)[0].x
-        frame_m = abs(right - left)
+        corners = self.camera.data.view_frame(scene=self.scene)
+        frame_m = abs(corners[2].x - corners[0].x)
         if self.camera.data.type == 'ORTHO':
             return self.width / frame_m
-        return self.width / frame_m * -self.camera.data.view_frame(scene=self.scene)[0].z / depth
+        return self.width / frame_m * -corners[0].z / depth
+
+    def id(self, *words):
+        """An id that a stroke has in every frame in which it is drawn in the same place of its layer."""
+        name = '-'.join(re.sub(r'[^\w.]+', '_', str(word)) for word in words)
+        self.names[name] = self.names.get(name, 0) + 1
+        return name if self.names[name] == 1 else f'{name}.{self.names[name]}'
+
+    def clip(self, shapes, inverted):
+        """The attribute that keeps what is inside of the shapes (path data), or outside of each."""
+        name = f'clip{len(self.defs)}'
+        page = f'M0 0H{self.width}V{self.height}H0z' if inverted else ''
+        self.defs.append(f'<clipPath id="{name}">' + ''.join(
+            f'<path clip-rule="{"evenodd" if inverted else "nonzero"}" d="{page}{data}"/>' for data in shapes) +
+            '</clipPath>')
+        return f'clip-path="url(#{name})"'
 
 
-def stroke_svg(page, matrix, stroke, material):
-    """The element of a stroke; '' where it is not seen."""
-    placed = [page.place(matrix @ point.co) for point in stroke.points]
-    if not placed or None in placed:
-        return ''
-    points = ' '.join('%.2f,%.2f' % at[:2] for at in placed)
-    closed = stroke.use_cyclic or material.show_fill
-    paint = ['fill="none"']
-    if material.show_fill:
-        paint = [f'fill="{srgb(material.fill_color)}" fill-opacity="{material.fill_color[3]:.3f}"']
-    if material.show_stroke:
-        pressure = sum(point.pressure for point in stroke.points) / len(stroke.points)
-        scale = sum(abs(value) for value in matrix.to_scale()) / 3
-        depth = sum(at[2] for at in placed) / len(placed)
-        width = stroke.line_width * LINE_M * pressure * scale * page.px_per_m(depth)
-        strength = sum(point.strength for point in stroke.points) / len(stroke.points)
-        paint.append(f'stroke="{srgb(material.color)}" stroke-width="{width:.2f}" '
-                     f'stroke-opacity="{material.color[3] * strength:.3f}" '
-                     'stroke-linecap="round" stroke-linejoin="round"')
-    return f'<{"polygon" if closed else "polyline"} points="{points}" {" ".join(paint)}/>'
+def path_data(points, closed=True):
+    return 'M' + 'L'.join('%.2f %.2f' % tuple(at[:2]) for at in points) + ('z' if closed else '')
 
 
-def layer_svg(page, thing, layer):
-    frame = layer.active_frame
-    if layer.hide or not frame:
-        return ''
-    matrix = thing.matrix_world @ layer.matrix_layer
-    lines = [f'<g inkscape:groupmode="layer" inkscape:label={quoteattr(layer.info)}'
-             f' opacity="{layer.opacity:.3f}">']
-    for stroke in frame.strokes:
-        slot = thing.material_slots[stroke.material_index].material
-        if slot and slot.grease_pencil and not slot.grease_pencil.hide:
-            lines.append(stroke_svg(page, matrix, stroke, slot.grease_pencil))
-    return '\n'.join(lines + ['</g>'])
+def ribbon(points, radii, closed, flat):
+    """The area of a line whose radius changes, as path data: quads between discs that all turn the same way."""
+    parts = []
+    count = len(points)
+    for i, (x, y) in enumerate(points):
+        r = radii[i]
+        if not (flat and not closed and i in (0, count - 1)):
+            parts.append(f'M{x - r:.2f} {y:.2f}a{r:.2f} {r:.2f} 0 1 1 {2 * r:.2f} 0a{r:.2f} {r:.2f} 0 1 1 {-2 * r:.2f} 0z')
+        if i + 1 == count and not closed:
+            break
+        u, v = points[(i + 1) % count]
+        q, length = radii[(i + 1) % count], math.hypot(u - x, v - y)
+        if length > 1e-3:
+            nx, ny = (v - y) / length, (x - u) / length
+            parts.append(path_data([(x + nx * r, y + ny * r), (u + nx * q, v + ny * q),
+                                    (u - nx * q, v - ny * q), (x - nx * r, y - ny * r)]))
+    return ''.join(parts)
 
 
-def frame_svg(context):
-    """The scene's current frame as text."""
+def gradient(page, material, stroke, placed, colour_of):
+    """The id of the gradient of a fill; Blender mixes it in linear light, hence nine stops."""
+    (u0, v0), rows = stroke.uv[0], []
+    for other in range(1, len(placed)):  # two edges that are not parallel give the map from texture to page
+        rows.append((stroke.uv[other][0] - u0, stroke.uv[other][1] - v0,
+                     placed[other][0] - placed[0][0], placed[other][1] - placed[0][1]))
+    suu, suv, svv = (sum(r[i] * r[j] for r in rows) for i, j in ((0, 0), (0, 1), (1, 1)))
+    det = suu * svv - suv * suv
+    if det < 1e-9:
+        return None
+    columns = []
+    for k in (2, 3):
+        a, b = (sum(r[i] * r[k] for r in rows) for i in (0, 1))
+        columns.append(((a * svv - b * suv) / det, (b * suu - a * suv) / det))
+    (a, c), (b, d) = columns
+    e, f = placed[0][0] - a * u0 - c * v0, placed[0][1] - b * u0 - d * v0
+    # Blender shifts the texture, turns and scales it, and puts its middle at .5, .5
+    cosine, sine = math.cos(material.texture_angle), math.sin(material.texture_angle)
+    sx, sy = material.texture_scale
+    turn = (cosine * sx, sine * sx, -sine * sy, cosine * sy)
+    px = -0.5 * (turn[0] + turn[2]) - material.texture_offset[0]
+    py = -0.5 * (turn[1] + turn[3]) - material.texture_offset[1]
+    numbers = (a * turn[0] + c * turn[1], b * turn[0] + d * turn[1], a * turn[2] + c * turn[3],
+               b * turn[2] + d * turn[3], a * px + c * py + e, b * px + d * py + f)
+    ends = [(material.fill_color, material.mix_color)[i != material.flip] for i in (0, 1)]
+    solid, factor = colour_of(ends[0]), material.mix_factor  # tints are of the share that is no gradient
+    stops = ''.join(f'<stop offset="{i / 8}" stop-color="{srgb(mixed(mixed(*ends, i / 8), solid, factor))}" '
+                    f'stop-opacity="{ends[0][3] + (ends[1][3] - ends[0][3]) * i / 8 * (1 - factor):.3f}"/>'
+                    for i in range(9))
+    name, radial = f'gradient{len(page.defs)}', material.gradient_type == 'RADIAL'
+    shape = 'cx="0.5" cy="0.5" r="0.5"' if radial else 'x1="0" y1="0" x2="1" y2="0"'
+    kind = 'radialGradient' if radial else 'linearGradient'
+    page.defs.append(f'<{kind} id="{name}" gradientUnits="userSpaceOnUse" {shape} gradientTransform="matrix'
+                     f'({" ".join("%.5g" % n for n in numbers)})">{stops}</{kind}>')
+    return name
+
+
+class Shape:
+    """A stroke on the page: path data of its fill and its line, and what they are painted with."""
+
+    def __init__(self, page, matrix, layer, stroke):
+        self.fill = self.line = self.data = ''
+        material, placed = stroke.material, [page.place(matrix @ point.co) for point in stroke.points]
+        self.seen = bool(material and placed and None not in placed)
+        if not self.seen:
+            return
+        flat = [at[:2] for at in placed]
+        tint = lambda colour: mixed(colour, layer.tint, layer.tint[3])
+        self.fill_hole = material.show_fill and material.use_fill_holdout
+        self.line_hole = material.show_stroke and material.use_stroke_holdout
+        if material.show_fill and len(flat) > 2:
+            own = lambda colour: tint(mixed(colour, stroke.mix, stroke.mix[3]))
+            name = None
+            if material.fill_style == 'GRADIENT' and stroke.uv:
+                name = gradient(page, material, stroke, placed, own)
+            if material.fill_style != 'SOLID' and not name:
+                page.lost.add('textures and gradients of fills that have no place on the page: their first colour')
+            paint = f'url(#{name})' if name else srgb(own(material.fill_color))
+            opacity = stroke.fill_opacity * (1 if name else material.fill_color[3])
+            self.data = path_data(flat)
+            self.fill = f'fill="{paint}" fill-opacity="{opacity:.3f}"'
+        if material.show_stroke:
+            self.set_line(page, matrix, stroke, material, placed, flat, tint)
+
+    def set_line(self, page, matrix, stroke, material, placed, flat, tint):
+        scale = abs(matrix.determinant()) ** (1 / 3)
+        self.radii = [-p.radius if p.radius < 0 else max(p.radius * scale * page.px_per_m(at[2]), 0.01)
+                      for p, at in zip(stroke.points, placed)]
+        mix, opacity = mean(p.mix for p in stroke.points), mean((p.opacity,) for p in stroke.points)[0]
+        if any(abs(p.mix[i] - mix[i]) > 0.05 for p in stroke.points for i in range(4)):
+            page.lost.add('colours that change along a line: their mean')
+        if material.mode != 'LINE' or material.stroke_style != 'SOLID':
+            page.lost.add('lines of dots, boxes and textures: plain lines')
+        self.ribbon = lambda: ribbon(flat, self.radii, stroke.closed, stroke.flat)
+        colour = srgb(tint(mixed(material.color, mix, mix[3])))
+        opacity *= material.color[3]
+        if max(self.radii) > 1.05 * min(self.radii):
+            self.line = f'd="{self.ribbon()}" fill="{colour}" fill-opacity="{opacity:.3f}"'
+        else:
+            self.line = (f'd="{path_data(flat, stroke.closed)}" fill="none" stroke="{colour}" '
+                         f'stroke-width="{2 * mean((r,) for r in self.radii)[0]:.2f}" stroke-opacity="{opacity:.3f}" '
+                         f'stroke-linecap="{"butt" if stroke.flat else "round"}" stroke-linejoin="round"')
+
+    def area(self):
+        """Path data of all that the stroke covers."""
+        return [data for data in (self.data, self.line and self.ribbon()) if data]
+
+    def elements(self, name):
+        if self.fill and not self.fill_hole:
+            yield f'<path id="{name}-fill" d="{self.data}" {self.fill}/>'
+        if self.line and not self.line_hole:
+            yield f'<path id="{name}-line" {self.line}/>'
+
+
+BLENDS = {'MULTIPLY': 'multiply', 'HARDLIGHT': 'hard-light'}
+
+
+def object_svg(page, thing, matrix):
+    """The group of an object: its layers in their order."""
+    layers = list(LAYERS[thing.type](thing))
+    shapes = {layer.name: [Shape(page, matrix @ layer.matrix, layer, stroke) for stroke in layer.strokes]
+              for _, layer in layers}
+    below = []  # finished layers
+    if getattr(thing, 'shader_effects', None) and any(effect.show_viewport for effect in thing.shader_effects):
+        page.lost.add('effects of objects: none')
+    for hidden, layer in layers:
+        if hidden:
+            continue
+        marks = []
+        for n, shape in enumerate(shapes[layer.name]):
+            if not shape.seen:
+                continue
+            for hole in ([shape.data] if shape.fill_hole else []) + ([shape.ribbon()] if shape.line_hole else []):
+                clip = page.clip([hole], True)
+                below = [f'<g {clip}>', *below, '</g>'] if below else []
+                marks = [f'<g {clip}>', *marks, '</g>'] if marks else []
+            marks += shape.elements(page.id(thing.name, layer.name, n))
+        style = f' style="mix-blend-mode:{BLENDS[layer.blend]}"' if layer.blend in BLENDS else ''
+        if layer.blend not in (*BLENDS, 'REGULAR'):
+            page.lost.add(f'layers that {layer.blend.lower()}: laid over')
+        if layer.lights and any(o.type == 'LIGHT' for o in page.scene.objects):
+            page.lost.add('lights: the colours of materials')
+        marks = [f'<g inkscape:groupmode="layer" inkscape:label={quoteattr(layer.name)} '
+                 f'opacity="{layer.opacity:.3f}"{style}>', *marks, '</g>']
+        kept = [data for name, inverted in layer.masks if not inverted
+                for shape in shapes.get(name, []) if shape.seen for data in shape.area()]
+        clips = [page.clip(kept, False)] if any(not inverted for _, inverted in layer.masks) else []
+        clips += [page.clip([data], True) for name, inverted in layer.masks if inverted
+                  for shape in shapes.get(name, []) if shape.seen for data in shape.area()]
+        for clip in clips:
+            marks = [f'<g {clip}>', *marks, '</g>']
+        below += marks
+    return [f'<g inkscape:label={quoteattr(thing.name)}>', *below, '</g>']
+
+
+def frame_svg(context, lost):
+    """The scene's current frame as text. Adds to the set `lost` what SVG cannot say."""
     page = Page(context.scene)
-    graph = context.evaluated_depsgraph_get()
-    seen = [o.evaluated_get(graph) for o in context.scene.objects if o.type == 'GPENCIL' and o.visible_get()]
     camera = context.scene.camera.matrix_world.translation
-    seen.sort(key=lambda o: -(o.matrix_world.translation - camera).length)  # far ones first
-    lines = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{page.width}" height="{page.height}"'
-             f' viewBox="0 0 {page.width} {page.height}"'
-             ' xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape">']
-    for thing in seen:
-        lines.append(f'<g inkscape:label={quoteattr(thing.name)}>')
-        lines += [layer_svg(page, thing, layer) for layer in thing.data.layers]
-        lines.append('</g>')
-    return '\n'.join(lines + ['</svg>\n'])
+    groups = []
+    for one in context.evaluated_depsgraph_get().object_instances:  # modifiers and instances are done
+        if one.object.type in LAYERS and not one.object.hide_render:
+            matrix = one.matrix_world.copy()
+            groups.append(((matrix.translation - camera).length, object_svg(page, one.object, matrix)))
+    groups.sort(key=lambda group: -group[0])  # far ones first
+    lost |= page.lost
+    head = (f'<svg xmlns="http://www.w3.org/2000/svg" width="{page.width}" height="{page.height}"'
+            f' viewBox="0 0 {page.width} {page.height}"'
+            ' xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape">')
+    defs = ['<defs>', *page.defs, '</defs>'] if page.defs else []
+    return '\n'.join([head, *defs, *(line for _, group in groups for line in group), '</svg>\n'])
 
 
 def export_frames(context, folder):
-    """Writes every frame of the scene. Returns their folder's pattern."""
+    """Writes every frame of the scene. Returns their folder's pattern, and what SVG could not say."""
     scene = context.scene
     if not scene.camera:
         raise RuntimeError('The scene has no camera, through which the drawing is seen.')
-    if not any(o.type == 'GPENCIL' and o.visible_get() for o in scene.objects):
+    if not any(o.type in LAYERS and o.visible_get() and not o.hide_render for o in scene.objects):
         raise RuntimeError('There is no Grease Pencil to be seen in the scene.')
     os.makedirs(folder, exist_ok=True)
-    before = scene.frame_current
+    before, lost = scene.frame_current, set()
     for frame in range(scene.frame_start, scene.frame_end + 1, scene.frame_step):
         scene.frame_set(frame)
         with open(os.path.join(folder, f'frame_{frame:04d}.svg'), 'w', encoding='utf-8') as file:
-            file.write(frame_svg(context))
+            file.write(frame_svg(context, lost))
     scene.frame_set(before)
-    return os.path.join(folder, 'frame_%04d.svg')
+    return os.path.join(folder, 'frame_%04d.svg'), sorted(lost)
 
 
 # ---- the program ---------------------------------------------------------------------------------
@@ -266,7 +470,9 @@ class FLUIDY_OT_paint(bpy.types.Operator):
         settings = context.scene.fluidy
         folder = bpy.path.abspath(settings.folder)
         self.pattern = os.path.join(folder, 'painted_%04d.png')
-        frames = export_frames(context, os.path.join(folder, 'drawing'))
+        frames, lost = export_frames(context, os.path.join(folder, 'drawing'))
+        if lost:
+            self.report({'WARNING'}, 'Drawn otherwise, since SVG cannot say it: ' + '; '.join(lost))
         self.painting = Painting(command(settings, context.scene, frames, self.pattern))
 
     def end(self, context):
