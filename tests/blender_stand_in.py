@@ -107,7 +107,8 @@ def drawn(new):
 first, second = drawn(True), drawn(False)
 assert first == second, (first, second)
 for part in ('fill="#00ff00"',  # a fill has the vertex colour
-             'd="M0 0H100V100H0zM45.00 55.00L',  # a holdout is cut out of what lies below
+             '<g clip-path="url(#clip0)">\n<path id="a_figure-Back-0-fill"',  # a holdout is cut out of what lies below
+             'clip0"><path clip-rule="evenodd" d="M0 0H100V100H0zM45.00 55.00L',
              'stroke="#0000bc" stroke-width="2.00"',  # a line has its vertex colour and its width
              'a3.00 3.00 0 1 1 6.00 0',  # or one that changes
              'id="a_figure-Lines-1-line"', 'mix-blend-mode:multiply', 'opacity="0.500"',
