@@ -30,7 +30,4 @@ const char *fl_marks_word(FlMarks marks);
 /** A medium's word, static. */
 const char *fl_medium_word(FlMedium medium);
 
-/** The medium of a word, AUTO for an unknown word; words must be checked before. */
-FlMedium fl_medium_of_word(const char *word);
-
 #endif

@@ -36,7 +36,8 @@ typedef enum FlFluidKind {
     FL_FLUID_HONEY,
 } FlFluidKind;
 
-#define FL_FLUID_WORDS "style|none|plain|smoke|water|fire|honey"
+/** The words from FL_FLUID_NONE on. */
+#define FL_FLUID_KINDS "none|plain|smoke|water|fire|honey"
 
 /** The engine that makes a region's paint: job/engine.h has the table. */
 typedef enum FlEngineChoice {

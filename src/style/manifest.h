@@ -2,6 +2,7 @@
 #ifndef FLUIDY_STYLE_MANIFEST_H
 #define FLUIDY_STYLE_MANIFEST_H
 
+#include "params/key_table.h"
 #include "style/style_folder.h"
 
 /** Values that style.ini did not give and that have to be found from the pictures. */
@@ -12,6 +13,9 @@ typedef enum FlGuess {
     FL_GUESS_FLOW = 1 << 3,
     FL_GUESS_FPS = 1 << 4,
 } FlGuess;
+
+/** The keys of FlFrontStyle and of FlWashStyle: recipes have these sections, too. */
+extern const FlKeyTable fl_front_table, fl_wash_table;
 
 /**
  * Reads the [style] section of the key file at `path` into the fields it names, and takes what is

@@ -1,9 +1,9 @@
 #include "watercolour/recipe.h"
 
+#include "base/error.h"
 #include "base/limits.h"
-#include "params/text.h"
-#include "style/style_folder.h"
-#include "watercolour/keylines.h"
+#include "params/key_file.h"
+#include "style/manifest.h"
 
 #include <string.h>
 
@@ -14,7 +14,6 @@ static FlRecipe *defaults(void)
         .name = g_strdup("Untitled"),
         .author = g_strdup("fluidy-svg"),
         .licence = g_strdup("CC0-1.0"),
-        .medium = g_strdup("auto"),
         .missing = g_strdup("none"),
         .oversample = 2,
         .fps = 24,
@@ -23,7 +22,7 @@ static FlRecipe *defaults(void)
         .granulation = FL_GRANULATION,
         .front = FL_FRONT_DEFAULTS,
         .wash = FL_WASH_DEFAULTS,
-        .steps = {60, 60},
+        .steps = {60},
         .warm_up = 1,
         .seed = 1,
         .mask_threshold = 0.02f,
@@ -73,167 +72,182 @@ void fl_recipe_free(FlRecipe *recipe)
     g_free(recipe->character);
     g_free(recipe->author);
     g_free(recipe->licence);
-    g_free(recipe->medium);
     g_free(recipe->missing);
     g_free(recipe);
 }
 
-static void read_recipe(FlKeyLines *lines, FlRecipe *recipe)
+static const FlTableKey recipe_keys[] = {
+    {"name", FL_KEY_OF(TEXT, FlRecipe, name)},
+    {"character", FL_KEY_OF(TEXT, FlRecipe, character)},
+    {"author", FL_KEY_OF(TEXT, FlRecipe, author)},
+    {"licence", FL_KEY_OF(TEXT, FlRecipe, licence)},
+    {"medium", FL_KEY_OF(WORD, FlRecipe, medium), .words = FL_MEDIUM_WORDS},
+    {"missing-orientations", FL_KEY_OF(TEXT, FlRecipe, missing)},
+    {"marks", FL_KEY_OF(WORD, FlRecipe, marks), .words = FL_MARKS_WORDS},
+    {"size", FL_KEY_OF(INTEGER, FlRecipe, width), 16, 4096, 2, 2},
+    {"frames", FL_KEY_OF(INTEGER, FlRecipe, frames), 1, 10000},
+    {"steps", FL_KEY_OF(INTEGER, FlRecipe, steps), 1, 100000, 1, 2},
+    {"warm-up", FL_KEY_OF(INTEGER, FlRecipe, warm_up), 1, 1000000},
+    {"oversample", FL_KEY_OF(INTEGER, FlRecipe, oversample), 1, 3},
+    {"seed", FL_KEY_OF(INTEGER, FlRecipe, seed), 0, 1 << 24},
+    {"fps", FL_KEY_OF(NUMBER, FlRecipe, fps), 1, 240},
+    {"border", FL_KEY_OF(NUMBER, FlRecipe, border), 1, 1000},
+    {"scale", FL_KEY_OF(NUMBER, FlRecipe, scale), 0.01, 100},
+    {"granulation", FL_KEY_OF(NUMBER, FlRecipe, granulation), -1, 1},
+    {"melt", FL_KEY_OF(NUMBER, FlRecipe, melt), 0, 1},
+    {"mask-threshold", FL_KEY_OF(NUMBER, FlRecipe, mask_threshold), 1e-4, 10},
+    {"mask-blur", FL_KEY_OF(NUMBER, FlRecipe, mask_blur), 0, 50},
+    {"mask-margin", FL_KEY_OF(NUMBER, FlRecipe, mask_margin), 0, 50},
+};
+
+/* size sets both. */
+G_STATIC_ASSERT(offsetof(FlRecipe, height) == offsetof(FlRecipe, width) + sizeof(int));
+
+static const FlTableKey paper_keys[] = {
+    {"colour", FL_KEY_OF(COLOUR, FlPaper, colour)},
+    {"grain", FL_KEY_OF(NUMBER, FlPaper, grain_px), 0.5, 100},
+    {"roughness", FL_KEY_OF(NUMBER, FlPaper, roughness), 0, 1},
+    {"stretch", FL_KEY_OF(NUMBER, FlPaper, stretch), 0.1, 10},
+    {"fibres", FL_KEY_OF(NUMBER, FlPaper, fibres), 0, 100},
+    {"fibre-length", FL_KEY_OF(NUMBER, FlPaper, fibre_px), 1, 1000},
+    {"fibre-curl", FL_KEY_OF(NUMBER, FlPaper, fibre_curl), 0, 1},
+    {"fibre-pull", FL_KEY_OF(NUMBER, FlPaper, fibre_pull), 0, 0.95},
+    {"capacity", FL_KEY_OF(NUMBER, FlPaper, capacity), 0.01, 10, 2, 2},
+    {"patchiness", FL_KEY_OF(NUMBER, FlPaper, patchiness), 0, 0.95},
+    {"patch-size", FL_KEY_OF(NUMBER, FlPaper, patch_px), 1, 1000},
+    {"pinning", FL_KEY_OF(NUMBER, FlPaper, pinning), 0, 1},
+    {"shading", FL_KEY_OF(NUMBER, FlPaper, shading), 0, 0.2},
+};
+
+static const FlTableKey flow_keys[] = {
+    {"shallow-water", FL_KEY_OF(SWITCH, FlFlow, shallow)},
+    {"viscosity", FL_KEY_OF(NUMBER, FlFlow, viscosity), 0, 0.24},
+    {"drag", FL_KEY_OF(NUMBER, FlFlow, drag), 0, 1},
+    {"slope", FL_KEY_OF(NUMBER, FlFlow, slope), 0, 10},
+    {"relaxation", FL_KEY_OF(NUMBER, FlFlow, relaxation), 0, 0.24},
+    {"tolerance", FL_KEY_OF(NUMBER, FlFlow, tolerance), 0, 1},
+    {"sweeps", FL_KEY_OF(INTEGER, FlFlow, sweeps), 0, 1000},
+    {"edge-darkening", FL_KEY_OF(NUMBER, FlFlow, edge_darkening), 0, 1},
+    {"absorb", FL_KEY_OF(NUMBER, FlFlow, absorb), 0, 1},
+    {"epsilon", FL_KEY_OF(NUMBER, FlFlow, epsilon), 0, 1},
+    {"delta", FL_KEY_OF(NUMBER, FlFlow, delta), -1, 1},
+    {"sigma", FL_KEY_OF(NUMBER, FlFlow, sigma), 0, 1},
+    {"diffusions", FL_KEY_OF(INTEGER, FlFlow, diffusions), 0, 100},
+    {"conduct", FL_KEY_OF(NUMBER, FlFlow, conduct), 0, 1},
+    {"mobility", FL_KEY_OF(INTEGER, FlFlow, mobility), 0, 4},
+    {"carry", FL_KEY_OF(NUMBER, FlFlow, carry), 0, 1},
+    {"settle", FL_KEY_OF(NUMBER, FlFlow, settle), 0, 10},
+    {"evaporation", FL_KEY_OF(NUMBER, FlFlow, evaporation), 0, 1},
+    {"rim-evaporation", FL_KEY_OF(NUMBER, FlFlow, rim_evaporation), 0, 1},
+    {"thickness", FL_KEY_OF(NUMBER, FlFlow, thickness), 0, 100},
+};
+
+static const FlTableKey dust_keys[] = {
+    {"grains", FL_KEY_OF(INTEGER, FlDust, grains), 0, 10000000},
+    {"speed", FL_KEY_OF(NUMBER, FlDust, speed_px), 0, 20},
+    {"swirl", FL_KEY_OF(NUMBER, FlDust, swirl), 0, 1},
+    {"swirl-size", FL_KEY_OF(NUMBER, FlDust, swirl_px), 1, 1000},
+    {"scatter", FL_KEY_OF(NUMBER, FlDust, scatter), 0, 10},
+    {"lumps", FL_KEY_OF(NUMBER, FlDust, lumps), 0, 1},
+    {"catch", FL_KEY_OF(NUMBER, FlDust, catch_rate), 0, 1},
+    {"weight", FL_KEY_OF(NUMBER, FlDust, weight), 0, 10},
+    {"rim", FL_KEY_OF(NUMBER, FlDust, rim_px), 0, 1000},
+};
+
+static const FlTableKey pigment_keys[] = {
+    {"absorption", FL_KEY_OF(NUMBER, FlPigment, absorption), 0, 100, 3, 3},
+    {"scattering", FL_KEY_OF(NUMBER, FlPigment, scattering), 0, 100, 3, 3},
+    {"density", FL_KEY_OF(NUMBER, FlPigment, density), 0, 1},
+    {"staining", FL_KEY_OF(NUMBER, FlPigment, staining), 0.01, 1000},
+    {"granulation", FL_KEY_OF(NUMBER, FlPigment, granulation), 0, 1},
+    {"diffusion", FL_KEY_OF(NUMBER, FlPigment, diffusion), 0, 0.2},
+};
+
+static const FlTableKey event_keys[] = {
+    {"points", FL_KEY_OF(NUMBER, FlEvent, points), -10000, 10000, 2, 2 * FL_MAX_POINTS},
+    {"radius", FL_KEY_OF(NUMBER, FlEvent, radius), 0.5, 10000},
+    {"wobble", FL_KEY_OF(NUMBER, FlEvent, wobble), 0, 1000},
+    {"wobble-size", FL_KEY_OF(NUMBER, FlEvent, wobble_px), 1, 1000},
+    {"growth", FL_KEY_OF(NUMBER, FlEvent, growth), 0, 100},
+    {"crinkle", FL_KEY_OF(NUMBER, FlEvent, crinkle), 0, 1},
+    {"hand", FL_KEY_OF(INTEGER, FlEvent, hand), 0, 1000},
+    {"sweep", FL_KEY_OF(NUMBER, FlEvent, sweep), 0, 2},
+    {"sweep-depth", FL_KEY_OF(NUMBER, FlEvent, sweep_px), 1, 1000},
+    {"sweep-rim", FL_KEY_OF(NUMBER, FlEvent, sweep_rim_px), 0, 1000},
+    {"from", FL_KEY_OF(NUMBER, FlEvent, from), 0, 10000},
+    {"until", FL_KEY_OF(NUMBER, FlEvent, until), 0, 10000},
+    {"water", FL_KEY_OF(NUMBER, FlEvent, water), 0, 1},
+    {"rate", FL_KEY_OF(NUMBER, FlEvent, rate), 0, 1},
+    {"load", FL_KEY_OF(NUMBER, FlEvent, load), 0, 10, 1, FL_MAX_PIGMENTS},
+    {"deposit", FL_KEY_OF(NUMBER, FlEvent, deposit), 0, 10, 1, FL_MAX_PIGMENTS},
+    {"streaks", FL_KEY_OF(NUMBER, FlEvent, streaks), 0, 1},
+    {"streak-size", FL_KEY_OF(NUMBER, FlEvent, streak_px), 1, 1000},
+    {"play", FL_KEY_OF(NUMBER, FlEvent, play), 0, 1},
+    {"bristles", FL_KEY_OF(NUMBER, FlEvent, bristles), 0, 1},
+    {"bristle-size", FL_KEY_OF(NUMBER, FlEvent, bristle_px), 0.5, 1000, 2, 2},
+    {"dry", FL_KEY_OF(NUMBER, FlEvent, dry), 0, 1, 2, 2},
+    {"dry-depth", FL_KEY_OF(NUMBER, FlEvent, dry_px), 0.5, 1000},
+    {"pressure", FL_KEY_OF(NUMBER, FlEvent, pressure), 0, 10},
+};
+
+#define TABLE(keys)                                                                                \
+    {                                                                                              \
+        keys, G_N_ELEMENTS(keys)                                                                   \
+    }
+
+static const FlKeyTable recipe_table = TABLE(recipe_keys), paper_table = TABLE(paper_keys),
+                        flow_table = TABLE(flow_keys), dust_table = TABLE(dust_keys),
+                        pigment_table = TABLE(pigment_keys), event_table = TABLE(event_keys);
+
+/* The sections that there is one of. */
+static const struct {
+    const char *name;
+    const FlKeyTable *table;
+    size_t offset; // of its struct
+} single[] = {
+    {"recipe", &recipe_table, 0},
+    {"front", &fl_front_table, offsetof(FlRecipe, front)},
+    {"wash", &fl_wash_table, offsetof(FlRecipe, wash)},
+    {"paper", &paper_table, offsetof(FlRecipe, paper)},
+    {"flow", &flow_table, offsetof(FlRecipe, flow)},
+    {"dust", &dust_table, offsetof(FlRecipe, dust)},
+};
+
+/* A section of the file. */
+typedef struct Section {
+    FlKeySection keys;
+    int line;
+    char *name;
+} Section;
+
+typedef struct Reader {
+    FlRecipe *recipe;
+    GArray *sections;
+} Reader;
+
+static void clear_section(void *section)
 {
-    fl_keylines_string(lines, "name", &recipe->name);
-    fl_keylines_string(lines, "character", &recipe->character);
-    fl_keylines_string(lines, "author", &recipe->author);
-    fl_keylines_string(lines, "licence", &recipe->licence);
-    fl_keylines_string(lines, "medium", &recipe->medium);
-    fl_keylines_string(lines, "missing-orientations", &recipe->missing);
-    g_autofree char *word = g_strdup(fl_marks_word(FL_MARKS_AUTO));
-    int medium = 0, marks = 0;
-    fl_keylines_string(lines, "marks", &word);
-    if (!fl_text_choice(word, FL_MARKS_WORDS, &marks))
-        fl_keylines_complain(lines, "marks",
-                             "marks: “%s”: expected auto, off, charcoal, pastel or brush", word);
-    recipe->marks = (FlMarks)marks;
-    if (!fl_text_choice(recipe->medium, FL_MEDIUM_WORDS, &medium))
-        fl_keylines_complain(lines, "medium",
-                             "medium: “%s”: expected auto, transparent, opaque or body",
-                             recipe->medium);
-    float size[2] = {0}, steps[2];
-    if (fl_keylines_floats(lines, "size", 2, 2, 16, 4096, size) == 0)
-        fl_keylines_complain(lines, "size", "size: expected width and height, such as 400 120");
-    recipe->width = (int)size[0], recipe->height = (int)size[1];
-    fl_keylines_int(lines, "frames", 1, 10000, &recipe->frames);
-    if (recipe->frames == 0)
-        fl_keylines_complain(lines, "frames", "frames: expected a whole number from 1 to 10000");
-    const double millions = (double)recipe->width * recipe->height * recipe->frames / 1e6;
-    g_autoptr(GError) problem = NULL;
-    if (!fl_limit_check(FL_LIMIT_STYLE, millions, "size", &problem))
-        fl_keylines_complain(lines, "size", "%s", problem->message);
-    const int n = fl_keylines_floats(lines, "steps", 1, 2, 1, 100000, steps);
-    for (int i = 0; n > 0 && i < 2; i++)
-        recipe->steps[i] = (int)steps[n == 2 ? i : 0];
-    fl_keylines_int(lines, "warm-up", 1, 1000000, &recipe->warm_up);
-    fl_keylines_int(lines, "oversample", 1, 3, &recipe->oversample);
-    int seed = 1;
-    fl_keylines_int(lines, "seed", 0, 1 << 24, &seed);
-    recipe->seed = (uint64_t)seed;
-    fl_keylines_float(lines, "fps", 1, 240, &recipe->fps);
-    fl_keylines_float(lines, "border", 1, 1000, &recipe->border);
-    fl_keylines_float(lines, "scale", 0.01f, 100, &recipe->scale);
-    fl_keylines_float(lines, "granulation", -1, 1, &recipe->granulation);
-    fl_keylines_float(lines, "melt", 0, 1, &recipe->melt);
-    fl_keylines_float(lines, "mask-threshold", 1e-4f, 10, &recipe->mask_threshold);
-    fl_keylines_float(lines, "mask-blur", 0, 50, &recipe->mask_blur);
-    fl_keylines_float(lines, "mask-margin", 0, 50, &recipe->mask_margin);
+    g_free(((Section *)section)->name);
 }
 
-static void read_front(FlKeyLines *lines, FlRecipe *recipe)
-{
-    FlFrontStyle *front = &recipe->front;
-    fl_keylines_float(lines, "width", 0, 1, &front->width);
-    fl_keylines_float(lines, "stain", 0, 1, &front->stain);
-    fl_keylines_float(lines, "film", 0, 1, &front->film);
-    fl_keylines_float(lines, "soft", 0, 1, &front->soft);
-    fl_keylines_float(lines, "base", 0, 1, &front->base);
-    fl_keylines_float(lines, "line", 0, 1, &front->line);
-    fl_keylines_float(lines, "fingers", 0, 1, &front->fingers);
-    fl_keylines_float(lines, "granulation", 0, 1, &front->granulation);
-}
-
-static void read_wash(FlKeyLines *lines, FlRecipe *recipe)
-{
-    FlWashStyle *wash = &recipe->wash;
-    fl_keylines_float(lines, "wash", 0, 2, &wash->wash);
-    fl_keylines_float(lines, "passes", 0, 2, &wash->passes);
-    fl_keylines_float(lines, "tide", 0, 2, &wash->tide);
-    fl_keylines_float(lines, "pool", 0, 2, &wash->pool);
-    fl_keylines_float(lines, "blooms", 0, 2, &wash->blooms);
-    fl_keylines_float(lines, "hue", 0, 12, &wash->hue);
-}
-
-static void read_paper(FlKeyLines *lines, FlRecipe *recipe)
-{
-    FlPaper *paper = &recipe->paper;
-    fl_keylines_colour(lines, "colour", paper->colour);
-    fl_keylines_float(lines, "grain", 0.5f, 100, &paper->grain_px);
-    fl_keylines_float(lines, "roughness", 0, 1, &paper->roughness);
-    fl_keylines_float(lines, "stretch", 0.1f, 10, &paper->stretch);
-    fl_keylines_float(lines, "fibres", 0, 100, &paper->fibres);
-    fl_keylines_float(lines, "fibre-length", 1, 1000, &paper->fibre_px);
-    fl_keylines_float(lines, "fibre-curl", 0, 1, &paper->fibre_curl);
-    fl_keylines_float(lines, "fibre-pull", 0, 0.95f, &paper->fibre_pull);
-    fl_keylines_floats(lines, "capacity", 2, 2, 0.01f, 10, paper->capacity);
-    fl_keylines_float(lines, "patchiness", 0, 0.95f, &paper->patchiness);
-    fl_keylines_float(lines, "patch-size", 1, 1000, &paper->patch_px);
-    fl_keylines_float(lines, "pinning", 0, 1, &paper->pinning);
-    fl_keylines_float(lines, "shading", 0, 0.2f, &paper->shading);
-}
-
-static void read_flow(FlKeyLines *lines, FlRecipe *recipe)
-{
-    FlFlow *flow = &recipe->flow;
-    fl_keylines_bool(lines, "shallow-water", &flow->shallow);
-    fl_keylines_float(lines, "viscosity", 0, 0.24f, &flow->viscosity);
-    fl_keylines_float(lines, "drag", 0, 1, &flow->drag);
-    fl_keylines_float(lines, "slope", 0, 10, &flow->slope);
-    fl_keylines_float(lines, "relaxation", 0, 0.24f, &flow->relaxation);
-    fl_keylines_float(lines, "tolerance", 0, 1, &flow->tolerance);
-    fl_keylines_int(lines, "sweeps", 0, 1000, &flow->sweeps);
-    fl_keylines_float(lines, "edge-darkening", 0, 1, &flow->edge_darkening);
-    fl_keylines_float(lines, "absorb", 0, 1, &flow->absorb);
-    fl_keylines_float(lines, "epsilon", 0, 1, &flow->epsilon);
-    fl_keylines_float(lines, "delta", -1, 1, &flow->delta);
-    fl_keylines_float(lines, "sigma", 0, 1, &flow->sigma);
-    fl_keylines_int(lines, "diffusions", 0, 100, &flow->diffusions);
-    fl_keylines_float(lines, "conduct", 0, 1, &flow->conduct);
-    fl_keylines_int(lines, "mobility", 0, 4, &flow->mobility);
-    fl_keylines_float(lines, "carry", 0, 1, &flow->carry);
-    fl_keylines_float(lines, "settle", 0, 10, &flow->settle);
-    fl_keylines_float(lines, "evaporation", 0, 1, &flow->evaporation);
-    fl_keylines_float(lines, "rim-evaporation", 0, 1, &flow->rim_evaporation);
-    fl_keylines_float(lines, "thickness", 0, 100, &flow->thickness);
-}
-
-static void read_dust(FlKeyLines *lines, FlRecipe *recipe)
-{
-    FlDust *dust = &recipe->dust;
-    fl_keylines_int(lines, "grains", 0, 10000000, &dust->grains);
-    fl_keylines_float(lines, "speed", 0, 20, &dust->speed_px);
-    fl_keylines_float(lines, "swirl", 0, 1, &dust->swirl);
-    fl_keylines_float(lines, "swirl-size", 1, 1000, &dust->swirl_px);
-    fl_keylines_float(lines, "scatter", 0, 10, &dust->scatter);
-    fl_keylines_float(lines, "lumps", 0, 1, &dust->lumps);
-    fl_keylines_float(lines, "catch", 0, 1, &dust->catch_rate);
-    fl_keylines_float(lines, "weight", 0, 10, &dust->weight);
-    fl_keylines_float(lines, "rim", 0, 1000, &dust->rim_px);
-}
-
-/* A pigment of the table, by the name of the group, or one with K and S of its own. */
-static void read_pigment(FlKeyLines *lines, FlRecipe *recipe, const char *name)
+/* A pigment of the table, by its name, or one with K and S of its own. */
+static FlPigment *begin_pigment(FlRecipe *recipe, const char *name, GError **error)
 {
     if (recipe->n_pigments == FL_MAX_PIGMENTS) {
-        fl_keylines_complain(lines, "pigment", "more than %d pigments", FL_MAX_PIGMENTS);
-        return;
+        fl_fail(error, FL_ERROR_INPUT, "more than %d pigments", FL_MAX_PIGMENTS);
+        return NULL;
     }
     FlPigment *pigment = &recipe->pigments[recipe->n_pigments++];
     const FlPigment *known = fl_pigment_find(name);
     *pigment = known ? *known : (FlPigment){.density = .03f, .staining = 3, .granulation = .5f};
-    const int n = fl_keylines_floats(lines, "absorption", 3, 3, 0, 100, pigment->absorption) +
-                  fl_keylines_floats(lines, "scattering", 3, 3, 0, 100, pigment->scattering);
-    if (!known && n != 6)
-        fl_keylines_complain(lines, "absorption",
-                             "is not a known pigment: expected absorption and scattering, three "
-                             "numbers each");
-    fl_keylines_float(lines, "density", 0, 1, &pigment->density);
-    fl_keylines_float(lines, "staining", 0.01f, 1000, &pigment->staining);
-    fl_keylines_float(lines, "granulation", 0, 1, &pigment->granulation);
-    fl_keylines_float(lines, "diffusion", 0, 0.2f, &pigment->diffusion);
+    return pigment;
 }
 
-static void read_event(FlKeyLines *lines, FlRecipe *recipe)
+static FlEvent *begin_event(FlRecipe *recipe, GError **error)
 {
     if (recipe->n_events == FL_MAX_EVENTS) {
-        fl_keylines_complain(lines, "event", "more than %d events", FL_MAX_EVENTS);
-        return;
+        fl_fail(error, FL_ERROR_INPUT, "more than %d events", FL_MAX_EVENTS);
+        return NULL;
     }
     FlEvent *event = &recipe->events[recipe->n_events++];
     *event = (FlEvent){.radius = 10,
@@ -243,73 +257,102 @@ static void read_event(FlKeyLines *lines, FlRecipe *recipe)
                        .bristle_px = {4, 60},
                        .dry_px = 10,
                        .sweep_px = 20};
-    float flat[2 * FL_MAX_POINTS];
-    const int n = fl_keylines_floats(lines, "points", 2, 2 * FL_MAX_POINTS, -10000, 10000, flat);
-    if (n == 0 || n % 2 != 0)
-        fl_keylines_complain(lines, "points", "points: expected pairs of x and y");
-    event->n_points = n / 2;
-    memcpy(event->points, flat, sizeof(float) * (size_t)(n / 2 * 2));
-    fl_keylines_float(lines, "radius", 0.5f, 10000, &event->radius);
-    fl_keylines_float(lines, "wobble", 0, 1000, &event->wobble);
-    fl_keylines_float(lines, "wobble-size", 1, 1000, &event->wobble_px);
-    fl_keylines_float(lines, "growth", 0, 100, &event->growth);
-    fl_keylines_float(lines, "crinkle", 0, 1, &event->crinkle);
-    fl_keylines_int(lines, "hand", 0, 1000, &event->hand);
-    fl_keylines_float(lines, "sweep", 0, 2, &event->sweep);
-    fl_keylines_float(lines, "sweep-depth", 1, 1000, &event->sweep_px);
-    fl_keylines_float(lines, "sweep-rim", 0, 1000, &event->sweep_rim_px);
-    fl_keylines_float(lines, "from", 0, 10000, &event->from);
-    event->until = event->from;
-    fl_keylines_float(lines, "until", event->from, 10000, &event->until);
-    fl_keylines_float(lines, "water", 0, 1, &event->water);
-    fl_keylines_float(lines, "rate", 0, 1, &event->rate);
-    fl_keylines_floats(lines, "load", 1, FL_MAX_PIGMENTS, 0, 10, event->load);
-    fl_keylines_floats(lines, "deposit", 1, FL_MAX_PIGMENTS, 0, 10, event->deposit);
-    fl_keylines_float(lines, "streaks", 0, 1, &event->streaks);
-    fl_keylines_float(lines, "streak-size", 1, 1000, &event->streak_px);
-    fl_keylines_float(lines, "play", 0, 1, &event->play);
-    fl_keylines_float(lines, "bristles", 0, 1, &event->bristles);
-    fl_keylines_floats(lines, "bristle-size", 2, 2, 0.5f, 1000, event->bristle_px);
-    fl_keylines_floats(lines, "dry", 2, 2, 0, 1, event->dry);
-    fl_keylines_float(lines, "dry-depth", 0.5f, 1000, &event->dry_px);
-    fl_keylines_float(lines, "pressure", 0, 10, &event->pressure);
+    return event;
 }
 
-static bool read_group(FlKeyLines *lines, int group, FlRecipe *recipe, GError **error)
+static bool begin_section(void *data, const char *name, int line, GError **error)
 {
-    const char *name = fl_keylines_group(lines, group);
-    fl_keylines_begin(lines, group);
-    if (strcmp(name, "recipe") == 0)
-        read_recipe(lines, recipe);
-    else if (strcmp(name, "front") == 0)
-        read_front(lines, recipe);
-    else if (strcmp(name, "wash") == 0)
-        read_wash(lines, recipe);
-    else if (strcmp(name, "paper") == 0)
-        read_paper(lines, recipe);
-    else if (strcmp(name, "flow") == 0)
-        read_flow(lines, recipe);
-    else if (strcmp(name, "dust") == 0)
-        read_dust(lines, recipe);
-    else if (g_str_has_prefix(name, "pigment "))
-        read_pigment(lines, recipe, name + strlen("pigment "));
+    Reader *reader = data;
+    FlKeySection keys = {.mistake = FL_ERROR_INPUT};
+    for (size_t i = 0; i < G_N_ELEMENTS(single); i++)
+        if (strcmp(name, single[i].name) == 0)
+            keys.table = single[i].table, keys.object = (char *)reader->recipe + single[i].offset;
+    if (g_str_has_prefix(name, "pigment "))
+        keys.table = &pigment_table,
+        keys.object = begin_pigment(reader->recipe, name + strlen("pigment "), error);
     else if (g_str_has_prefix(name, "event "))
-        read_event(lines, recipe);
-    else
-        fl_keylines_complain(lines, "",
-                             "is not a group of a recipe: expected recipe, front, wash, paper, "
-                             "flow, dust, pigment NAME or event NAME");
-    return fl_keylines_end(lines, error);
+        keys.table = &event_table, keys.object = begin_event(reader->recipe, error);
+    else if (!keys.table)
+        return fl_fail(error, FL_ERROR_INPUT,
+                       "[%s] is not a group of a recipe: expected recipe, front, wash, paper, "
+                       "flow, dust, pigment NAME or event NAME",
+                       name);
+    const Section section = {keys, line, g_strdup(name)};
+    g_array_append_val(reader->sections, section);
+    return keys.object != NULL;
+}
+
+static bool read_key(void *data, const char *key, const char *value, int line, GError **error)
+{
+    const Reader *reader = data;
+    const guint n = reader->sections->len;
+    if (n == 0)
+        return fl_fail(error, FL_ERROR_INPUT, "“%s” stands above the first [group]", key);
+    Section *section = &g_array_index(reader->sections, Section, n - 1);
+    return fl_key_section_set(&section->keys, key, value, error) != NULL;
+}
+
+static bool check_recipe(const FlKeySection *keys, GError **error)
+{
+    FlRecipe *recipe = keys->object;
+    const double millions = (double)recipe->width * recipe->height * recipe->frames / 1e6;
+    if (!fl_key_section_count(keys, "size"))
+        return fl_fail(error, FL_ERROR_INPUT, "size: expected width and height, such as 400 120");
+    if (!fl_key_section_count(keys, "frames"))
+        return fl_fail(error, FL_ERROR_INPUT, "frames: expected a whole number from 1 to 10000");
+    if (recipe->steps[1] == 0)
+        recipe->steps[1] = recipe->steps[0];
+    return fl_limit_check(FL_LIMIT_STYLE, millions, "size", error);
+}
+
+static bool check_pigment(const FlKeySection *keys, const char *name, GError **error)
+{
+    return fl_pigment_find(name) ||
+           (fl_key_section_count(keys, "absorption") && fl_key_section_count(keys, "scattering")) ||
+           fl_fail(error, FL_ERROR_INPUT,
+                   "is not a known pigment: expected absorption and scattering, three numbers "
+                   "each");
+}
+
+static bool check_event(const FlKeySection *keys, GError **error)
+{
+    FlEvent *event = keys->object;
+    const int n = fl_key_section_count(keys, "points");
+    if (n == 0 || n % 2 != 0)
+        return fl_fail(error, FL_ERROR_INPUT, "points: expected pairs of x and y");
+    event->n_points = n / 2;
+    if (!fl_key_section_count(keys, "until"))
+        event->until = event->from;
+    return event->until >= event->from ||
+           fl_fail(error, FL_ERROR_INPUT, "until: expected a number from %g to 10000",
+                   (double)event->from);
+}
+
+/* Checks the keys of a section together. */
+static bool check_section(const Section *section, const char *path, GError **error)
+{
+    const FlKeySection *keys = &section->keys;
+    const bool good = keys->table == &recipe_table ? check_recipe(keys, error)
+                      : keys->table == &pigment_table
+                          ? check_pigment(keys, strchr(section->name, ' ') + 1, error)
+                      : keys->table == &event_table ? check_event(keys, error)
+                                                    : true;
+    if (!good)
+        g_prefix_error(error, "%s:%d: [%s] ", path, section->line, section->name);
+    return good;
 }
 
 FlRecipe *fl_recipe_load(const char *path, GError **error)
 {
-    g_autoptr(FlKeyLines) lines = fl_keylines_load(path, error);
-    if (!lines)
-        return NULL;
     g_autoptr(FlRecipe) recipe = defaults();
-    for (int i = 0; i < fl_keylines_n_groups(lines); i++)
-        if (!read_group(lines, i, recipe, error))
+    g_autoptr(GArray) sections = g_array_new(FALSE, FALSE, sizeof(Section));
+    Reader reader = {recipe, sections};
+    const FlKeyReader calls = {begin_section, read_key, &reader, FL_ERROR_INPUT, NULL};
+    g_array_set_clear_func(sections, clear_section);
+    if (!fl_key_file_read(path, &calls, error))
+        return NULL;
+    for (guint i = 0; i < sections->len; i++)
+        if (!check_section(&g_array_index(sections, Section, i), path, error))
             return NULL;
     if (recipe->width == 0 || recipe->n_pigments == 0 || recipe->n_events == 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,

@@ -82,7 +82,7 @@ typedef struct FlDust {
 } FlDust;
 
 typedef struct FlRecipe {
-    char *name, *author, *licence, *medium, *missing;
+    char *name, *author, *licence, *missing;
     char *character;           // NULL: not given
     int width, height, frames; // px
     int oversample;            // cells per px, 1..3
@@ -90,11 +90,12 @@ typedef struct FlRecipe {
     float granulation;     // as of fl_granulate()
     float melt;            // as of FlStyle
     int steps[2], warm_up; // steps before the second and before the last frame; before the first
-    uint64_t seed;
+    int seed;
     float mask_threshold, mask_margin; // least thickness of paint; bare margin, px
     float mask_blur;                   // radius over which the thickness is averaged, px
     FlFrontStyle front;
     FlWashStyle wash;
+    FlMedium medium;
     FlMarks marks;
     FlPaper paper;
     FlFlow flow;

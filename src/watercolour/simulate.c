@@ -74,7 +74,7 @@ static FlStyle *new_style(const FlRecipe *recipe, int size, const char *recipe_p
         .melt = recipe->melt,
         .front = recipe->front,
         .wash = recipe->wash,
-        .medium = fl_medium_of_word(recipe->medium),
+        .medium = recipe->medium,
         .marks = recipe->marks,
     };
     memcpy(style->paper, recipe->paper.colour, sizeof style->paper);

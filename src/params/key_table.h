@@ -1,0 +1,61 @@
+/* Tables of keys: the field that each key of a section sets, and the values that it may have. */
+#ifndef FLUIDY_PARAMS_KEY_TABLE_H
+#define FLUIDY_PARAMS_KEY_TABLE_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef enum FlKeyType {
+    FL_KEY_TEXT,    // char *, of the struct
+    FL_KEY_NUMBER,  // float, one or several with spaces or commas between
+    FL_KEY_INTEGER, // int, likewise
+    FL_KEY_SWITCH,  // bool: on or off
+    FL_KEY_COLOUR,  // uint8_t[3]: #rrggbb
+    FL_KEY_WORD,    // an enum
+} FlKeyType;
+
+/** A key of a section. */
+typedef struct FlTableKey {
+    const char *name;
+    FlKeyType type;
+    size_t offset;     // of the field
+    double min, max;   // inclusive, of a number; min: also the value of the first word
+    int least, most;   // number of numbers; 0: one
+    const char *words; // with | between, in the enum's order
+    unsigned flag;     // for the caller
+} FlTableKey;
+
+/** The type and the field of a key. */
+#define FL_KEY_OF(kind, type, field) FL_KEY_##kind, offsetof(type, field)
+
+/** All keys of a section. */
+typedef struct FlKeyTable {
+    const FlTableKey *key;
+    size_t n; // FL_MOST_KEYS at most
+} FlKeyTable;
+
+#define FL_MOST_KEYS 32
+
+/** A section that is read. */
+typedef struct FlKeySection {
+    const FlKeyTable *table;
+    void *object;               // the struct with the fields
+    FlError mistake;            // the error code
+    int n_values[FL_MOST_KEYS]; // of each key; 0: it is not given
+} FlKeySection;
+
+/** Sets a key's field. Returns: the key; NULL with section->mistake, which names no file. */
+const FlTableKey *fl_key_section_set(FlKeySection *section, const char *name, const char *value,
+                                     GError **error);
+
+/** The number of values that a key of the table has been given; 0: none. */
+int fl_key_section_count(const FlKeySection *section, const char *name);
+
+/** Appends "key = value" lines of the texts that are not NULL, and of the words and numbers that
+ * differ from those of `usual`, which may be NULL. Keys with one of the flags are left out. Each
+ * key has one value. */
+void fl_key_table_write(const FlKeyTable *table, const void *object, const void *usual,
+                        unsigned flags, GString *text);
+
+#endif
