@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Asks the server of --serve what it must not answer; speaks lines of "ok - " and "not ok - ".
 
-usage: ask_live.py ADDRESS"""
-import http.client, socket, sys, time, urllib.parse
+usage: ask_live.py ADDRESS [flood]
+flood: opens more connections than the server has descriptors for, and drops bad.json and good.lottie, nothing else."""
+import http.client, json, socket, struct, sys, time, urllib.parse
 
 address = urllib.parse.urlsplit(sys.argv[1])
 root, host = address.path, address.netloc
@@ -17,17 +18,75 @@ def ask(method, path, headers={}, **form):
     return answer.status, answer.read().decode()
 
 
-def look(**more):
-    """The first bytes that a page gets which asks for pictures."""
+def connect(**more):
+    """A connection that asks for pictures."""
     headers = {"Host": host, "Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13",
                "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==", **more}
-    with socket.create_connection((address.hostname, address.port), 20) as connection:
-        lines = [f"GET {root}pictures HTTP/1.1", *[f"{name}: {value}" for name, value in headers.items()], "", ""]
-        connection.sendall("\r\n".join(lines).encode())
+    connection = socket.create_connection((address.hostname, address.port), 20)
+    lines = [f"GET {root}pictures HTTP/1.1", *[f"{name}: {value}" for name, value in headers.items()], "", ""]
+    connection.sendall("\r\n".join(lines).encode())
+    return connection
+
+
+def look(**more):
+    """The first bytes that a page gets which asks for pictures."""
+    with connect(**more) as connection:
         got = b""
         while b"state" not in got and (more := connection.recv(4096)):
             got += more
         return got.decode(errors="replace")
+
+
+class Page:
+    """A page that takes messages and pictures."""
+
+    def __init__(self):
+        self.connection = connect()
+        self.file = self.connection.makefile("rb")
+        while self.file.readline() != b"\r\n":
+            pass
+
+    def message(self):
+        """A state or another message, or the six numbers of a picture, which is thanked for."""
+        kind, size = self.file.read(2)
+        size = struct.unpack(">H", self.file.read(2))[0] if size == 126 else struct.unpack(">Q", self.file.read(8))[0] if size == 127 else size
+        data = self.file.read(size)
+        if kind & 15 == 1:
+            return json.loads(data)
+        self.connection.sendall(bytes([0x81, 0x84]) + b"\0\0\0\0more")
+        return struct.unpack("<6I", data[:24])
+
+    def until(self, true):
+        while not true(message := self.message()):
+            pass
+        return message
+
+    def draft(self, generation):
+        """The number of a draft of the settings."""
+        return self.until(lambda m: isinstance(m, tuple) and m[0] == 1 and m[1] == generation)[2]
+
+
+def leave(connections):
+    """Closes them, and waits until the server has seen that."""
+    for connection in connections:
+        connection.close()
+    status = 0
+    while status != 200:
+        try:
+            status = ask("GET", root)[0]
+        except OSError:
+            time.sleep(0.1)
+
+
+def flood():
+    """Opens connections until the server takes no more."""
+    many = []
+    try:
+        while len(many) < 200:
+            many.append(socket.create_connection((address.hostname, address.port), 0.3))
+    except OSError:
+        pass
+    leave(many)
 
 
 def choose(headers=own, section="defaults", key="carry", value="0.5"):
@@ -47,6 +106,15 @@ def tell(sentence, good):
     print(("ok - " if good else "not ok - ") + sentence)
 
 
+if "flood" in sys.argv:
+    flood()
+    page = Page()
+    tell("a page has pictures after more connections than descriptors", page.until(lambda m: isinstance(m, tuple)))
+    status, words = ask("POST", root + "drop?name=bad.json&first=1&last=1", own, x="y")
+    tell("an animation without frames is refused with its words", status == 400 and words == "no player\n")
+    status = ask("POST", root + "drop?name=good.lottie&first=1&last=1", own, x="y")[0]
+    tell("one with frames is shown", status == 200 and page.until(lambda m: "film" in m)["film"]["numbers"] == [7])
+    sys.exit()
 tell("the page is there", ask("GET", root)[0] == 200 and "inspect" not in ask("GET", root)[1])
 tell("its address has a secret", ask("GET", "/")[0] == 404 and ask("GET", "/0000/options")[0] == 404 and len(root) > 30)
 tell("a name that leads here from elsewhere is refused", ask("GET", root, {"Host": f"evil.example:{address.port}"})[0] == 403)
@@ -72,13 +140,14 @@ end = time.monotonic() + 20
 while sum(map(is_open, many)) > 64 and time.monotonic() < end:
     time.sleep(0.05)
 few = sum(map(is_open, many)) <= 64
-for connection in many:
-    connection.close()
-status = 0
-while status != 200:  # until the server has seen that they are closed
-    try:
-        status = ask("GET", root)[0]
-    except OSError:
-        time.sleep(0.1)
-tell("of a hundred connections at most 64 stay open, and the others do no harm", few and status == 200)
+leave(many)
+tell("of a hundred connections at most 64 stay open, and the others do no harm", few)
+pages = [Page(), Page()]
+generations = [page.until(lambda m: "state" in m)["state"]["generation"] for page in pages]
+tell("two pages have one state", generations[0] == generations[1])
+answer = ask("POST", root + "choice", own, section="defaults", key="tint", value="#123456")[1]
+tell("a choice of one is drafted for both", all(page.draft(int(answer)) >= 0 for page in pages))
+pages[0].connection.close()
+answer = ask("POST", root + "choice", own, section="defaults", key="tint", value="")[1]
+tell("one that is left goes on", pages[1].draft(int(answer)) >= 0)
 tell("none of them changed the config", ask("GET", root + "config")[1].count("=") == 2)

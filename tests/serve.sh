@@ -92,7 +92,34 @@ fi
 result $? 'the server writes no outputs and does not change the config'
 ends INT
 result $? 'SIGINT ends it with status 0, without leftovers'
+
+mkdir bin
+cp "$program" bin
+LD_LIBRARY_PATH=$(dirname "$program")/..${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+export LD_LIBRARY_PATH
+built=$program program=$folder/bin/fluidy-svg
+"$program" film -s "$style" --window >out 2>err
+[ $? = 2 ] && says "$folder/bin/fluidy-window cannot be run"
+result $? 'a build without a window says so'
+printf '#!/bin/sh\necho "$1" >shown\nuntil [ -e close ]; do sleep 0.05; done\n' >bin/fluidy-window
+chmod +x bin/fluidy-window
+serves -s "$style" --window
+until [ -s shown ]; do sleep 0.05; done
+[ "$(cat shown)" = "$address" ] && ends INT
+result $? 'a window shows the page, and ends with the program'
+serves -s "$style" --window
+touch close
+wait $job
+result $? 'the program ends with its window'
+program=$built
+printf '#!/bin/sh\ncase $1 in *bad.json) echo "no player" >&2; exit 1;; esac\nmkdir "$3" && cp "%s/film/w_0001.svg" "$3/7.svg"\n' "$PWD" >bin/fluidy-frames
+chmod +x bin/fluidy-frames
+PATH=$folder/bin:$PATH
+most=$(ulimit -Sn)
+ulimit -Sn 60
 serves -s "$style" --serve
+ulimit -Sn "$most"
+visit ask_live.py "$address" flood
 ends TERM
 result $? 'so does SIGTERM while it paints'
 echo "1..$n"

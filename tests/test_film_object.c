@@ -322,20 +322,25 @@ static bool count_down(void *data)
     return g_atomic_int_dec_and_test((int *)data);
 }
 
+/* Two regions ask once each before they are painted, and then within. */
 static void a_frame_can_be_stopped_within(void)
 {
-    g_autoptr(Case) test = case_new();
-    g_autoptr(GError) error = NULL;
-    g_autofree uint8_t *first = frame_of(test->film, 2);
-    int left = 4; // regions until it stops
-    const FlFilmCalls calls = {.size = sizeof calls, .stopped = count_down, .data = &left};
-    fl_film_set_calls(test->film, &calls);
-    set(test->film, NULL, "w-temp", "3");
-    g_assert_null(fl_film_frame(test->film, 2, &error));
-    g_assert_error(error, FL_ERROR, FL_ERROR_INTERRUPTED);
-    set(test->film, NULL, "w-temp", NULL);
-    g_autofree uint8_t *again = frame_of(test->film, 2);
-    g_assert_cmpmem(again, 4 * WIDTH * HEIGHT, first, 4 * WIDTH * HEIGHT);
+    g_autoptr(Case) test = case_new(), other = case_new();
+    for (int stop = 1; stop < 5; stop++) {
+        g_autoptr(GError) error = NULL;
+        int left = stop;
+        const FlFilmCalls calls = {.size = sizeof calls, .stopped = count_down, .data = &left};
+        const char value[] = {(char)('0' + stop), '\0'};
+        set(test->film, NULL, "w-temp", value);
+        set(other->film, NULL, "w-temp", value);
+        fl_film_set_calls(test->film, &calls);
+        g_assert_null(fl_film_frame(test->film, 0, &error));
+        g_assert_error(error, FL_ERROR, FL_ERROR_INTERRUPTED);
+        for (int f = 0; f < 2; f++) {
+            g_autofree uint8_t *again = frame_of(test->film, f), *whole = frame_of(other->film, f);
+            g_assert_cmpmem(again, 4 * WIDTH * HEIGHT, whole, 4 * WIDTH * HEIGHT);
+        }
+    }
 }
 
 static bool stop_at_guides(const FlProgress *progress, void *data)

@@ -37,6 +37,14 @@ void fl_parallel_error_keep(GError **first, GError *failure)
     g_clear_error(&failure);
 }
 
+bool fl_stop_asked(const FlStop *stop, GError **error)
+{
+    const bool asked = stop && stop->asked && stop->asked(stop->data);
+    if (asked)
+        g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted within a frame");
+    return asked;
+}
+
 bool fl_parallel_error_propagate(GError **error, GError *first)
 {
     if (first)

@@ -8,6 +8,15 @@
 /** Sets an error of FL_ERROR. Returns: false. */
 bool fl_fail(GError **error, FlError code, const char *format, ...) G_GNUC_PRINTF(3, 4);
 
+/** Asks a caller to stop, from any thread; `asked` may be NULL. */
+typedef struct FlStop {
+    bool (*asked)(void *data);
+    void *data;
+} FlStop;
+
+/** Returns: true with FL_ERROR_INTERRUPTED if the caller wants to stop. stop: NULL: no caller. */
+bool fl_stop_asked(const FlStop *stop, GError **error);
+
 /** Sends a line to a callback of a caller, such as FlRenderOptions.note; `to` may be NULL. */
 void fl_tell(void (*to)(const char *message, void *data), void *data, const char *format, ...)
     G_GNUC_PRINTF(3, 4);

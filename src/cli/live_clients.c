@@ -7,6 +7,7 @@ enum {
     CREDIT = 16, // pictures on their way to a page
     LEAST = 3,   // of them for a job, which gives up to three
     LAG = 6,     // frames by which drafts follow the one that is looked at, one after the other
+    AROUND = 12, // frames that are drafted in turn after and before one that stays
     PING_S = 20,
 };
 
@@ -18,7 +19,7 @@ typedef struct Client {
     SoupWebsocketConnection *socket;
     int look, next; // frames: that is looked at, and that follows the last draft
     int credit;
-    bool hidden;
+    bool hidden, plays;
     uint8_t *has;  // by frame
     char *region;  // of samples; "": all
     int sampled;   // the frame of samples
@@ -74,13 +75,18 @@ bool fl_live_clients_stuck(const FlLiveClients *clients)
 /* ---- the next job -----------------------------------------------------------------------------
  */
 
-/* The first frame from `start` on, in a loop, that lacks one of the parts; -1: no frame does. */
-static int find_lack(const Client *client, int start, int parts)
+/* The first frame from `start` on, in a loop, that lacks one of the parts; -1: no frame does. In
+ * turn so many frames `around` from there on and so many before, each from the earliest on, since a
+ * frame that follows the last one is drafted sooner. */
+static int find_lack(const Client *client, int start, int around, int parts)
 {
     const int n = client->clients->n_frames;
-    for (int k = 0; k < n; k++)
-        if (!(client->has[(start + k) % n] & parts))
-            return (start + k) % n;
+    for (int k = 0; k < n + 2 * around; k++) {
+        const int turn = k / around, blocks = turn % 2 == 0 ? turn / 2 : -(turn + 1) / 2;
+        const int frame = ((start + blocks * around + k % around) % n + n) % n;
+        if (!(client->has[frame] & parts))
+            return frame;
+    }
     return -1;
 }
 
@@ -90,8 +96,9 @@ static bool wants_draft(Client *client, FlLiveJob *job)
     const int lag = n > 0 ? (client->look - client->next + n) % n : 0;
     const bool goes_on = n > 0 && client->has[client->look % n] == 0 && lag > 0 && lag <= LAG &&
                          client->has[(client->next + n - 1) % n] & HAS_DRAFT;
+    const int start = goes_on ? client->next : client->look;
     const int frame =
-        n > 0 ? find_lack(client, goes_on ? client->next : client->look, HAS_DRAFT) : client->look;
+        n > 0 ? find_lack(client, start, client->plays ? n : AROUND, HAS_DRAFT) : client->look;
     job->work = FL_LIVE_DRAFT;
     job->frame = frame;
     job->with_drawing = n == 0 || (frame >= 0 && !(client->has[frame] & HAS_DRAWING));
@@ -116,7 +123,8 @@ static bool wants_sample(Client *client, FlLiveJob *job)
 static bool wants_frame(Client *client, FlLiveJob *job)
 {
     job->work = FL_LIVE_FRAME;
-    job->frame = client->clients->spoilt ? -1 : find_lack(client, 0, HAS_FRAME);
+    const int n = client->clients->n_frames;
+    job->frame = client->clients->spoilt || n == 0 ? -1 : find_lack(client, 0, n, HAS_FRAME);
     return job->frame >= 0;
 }
 
@@ -150,9 +158,10 @@ static void on_text(SoupWebsocketConnection *socket, int type, GBytes *message, 
     const char *bytes = g_bytes_get_data(message, &n);
     g_autofree char *text = g_strndup(bytes ? bytes : "", n);
     const int last = MAX(clients->n_frames - 1, 0);
-    if (g_str_has_prefix(text, "look "))
+    if (g_str_has_prefix(text, "look ") || g_str_has_prefix(text, "play ")) {
         client->look = number_after(text, "look ", last);
-    else if (strcmp(text, "more") == 0)
+        client->plays = *text == 'p';
+    } else if (strcmp(text, "more") == 0)
         client->credit = MIN(client->credit + 1, CREDIT);
     else if (g_str_has_prefix(text, "hide "))
         client->hidden = number_after(text, "hide ", 1);

@@ -280,6 +280,27 @@ static void post_save(Live *live, SoupServerMessage *message, GHashTable *query)
     answer(message, "text/plain; charset=utf-8", path, strlen(path));
 }
 
+typedef struct Dropped {
+    Live *live;
+    SoupServerMessage *message;
+} Dropped;
+
+static void on_dropped(const GError *error, void *data)
+{
+    g_autofree Dropped *dropped = data;
+    Live *live = dropped->live;
+    if (error)
+        refuse(dropped->message, SOUP_STATUS_BAD_REQUEST, error->message);
+    else {
+        fl_live_drop_free(live->drop);
+        live->drop = g_steal_pointer(&live->dropping);
+        paint_anew(live, true);
+        answer(dropped->message, "text/plain", "dropped\n", strlen("dropped\n"));
+    }
+    soup_server_message_unpause(dropped->message);
+    g_object_unref(dropped->message);
+}
+
 /* ?name=NAME&first=1&last=1: one of several files, which are the drawing from the last one on. */
 static void post_drop(Live *live, SoupServerMessage *message, GHashTable *query)
 {
@@ -293,12 +314,14 @@ static void post_drop(Live *live, SoupServerMessage *message, GHashTable *query)
         refuse(message, SOUP_STATUS_BAD_REQUEST, error ? error->message : "expected a name");
         return;
     }
-    if (g_hash_table_contains(query, "last")) {
-        fl_live_drop_free(live->drop);
-        live->drop = g_steal_pointer(&live->dropping);
-        paint_anew(live, true);
+    if (!g_hash_table_contains(query, "last")) {
+        answer(message, "text/plain", "dropped\n", strlen("dropped\n"));
+        return;
     }
-    answer(message, "text/plain", "dropped\n", strlen("dropped\n"));
+    Dropped *dropped = g_new(Dropped, 1);
+    *dropped = (Dropped){live, g_object_ref(message)};
+    soup_server_message_pause(message);
+    fl_live_drop_end(live->dropping, on_dropped, dropped);
 }
 
 /* ---- requests ------------------------------------------------------------------------------- */

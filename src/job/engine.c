@@ -9,7 +9,10 @@
 
 static void *patch_open(const FlEngineInput *input, GError **error)
 {
-    return fl_synth_new(input->style->exemplar, &input->settings->params, input->size, input->seed);
+    FlSynth *synth =
+        fl_synth_new(input->style->exemplar, &input->settings->params, input->size, input->seed);
+    fl_synth_stop_by(synth, input->stop);
+    return synth;
 }
 
 static void patch_close(void *state)

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_JOB_ENGINE_H
 #define FLUIDY_JOB_ENGINE_H
 
+#include "base/error.h"
 #include "compose/painted_region.h"
 
 /** The input of a region's painting; it outlives the region's state. */
@@ -9,8 +10,9 @@ typedef struct FlEngineInput {
     const FlStyleInstance *style;
     const FlStyleInstance *tile; // its tile moves the paint; may be NULL
     const FlRegionSettings *settings;
-    FlSynthSize size; // of the picture, and of the frames
-    uint64_t seed;    // of the render and the region
+    FlSynthSize size;   // of the picture, and of the frames
+    uint64_t seed;      // of the render and the region
+    const FlStop *stop; // of a frame, which then fails
 } FlEngineInput;
 
 /** The output of an engine for a frame. */

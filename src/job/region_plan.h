@@ -62,6 +62,7 @@ typedef struct FlShapes {
     bool (*flow)(void *data, const FlRegionPlan *region, int frame, float unknown, float *flow,
                  GError **error);
     void *data;
+    FlStop stop; // of a picture within its making
 } FlShapes;
 
 #endif

@@ -105,11 +105,8 @@ static bool paint_one(void *data, int p, int frame, GError **error)
     const FlPlan *plan = frames->plan;
     FlPainter *painter = frames->painters.painter[p];
     const bool taken_apart = plan->options.dump || exports(plan);
-    if (plan->any_order && plan->options.stopped && plan->options.stopped(plan->options.data)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted within frame %d; %s",
-                    fl_drawing_number(plan->drawing, frame), frames->advice);
+    if (fl_stop_asked(&frames->painters.shapes.stop, error))
         return false;
-    }
     painter->wants_guides = taken_apart || frames->report;
     painter->wants_view = taken_apart || fl_report_wants_view(frames->report, frame);
     const bool painted = fl_painter_frame(painter, frame, error) &&

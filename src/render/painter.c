@@ -114,7 +114,8 @@ static bool open_engine(FlPainter *painter, GError **error)
                                  plan->tile,
                                  &plan->settings,
                                  {rect.width, rect.height, page.width, page.height},
-                                 fl_key(painter->shapes->seed, g_str_hash(plan->name))};
+                                 fl_key(painter->shapes->seed, g_str_hash(plan->name)),
+                                 &painter->shapes->stop};
     if (painter->paint)
         plan->engine->close(painter->paint);
     painter->paint = plan->engine->open(&input, error);

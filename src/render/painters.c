@@ -99,7 +99,8 @@ static FlShapes shapes_of(FlPainters *painters)
                       .surround = plan->surround,
                       .drawing = plan->drawing,
                       .flow = plan->options.flow ? flow_from_file : NULL,
-                      .data = painters};
+                      .data = painters,
+                      .stop = {plan->any_order ? plan->options.stopped : NULL, plan->options.data}};
 }
 
 /* Opens the drawing's own motion for the regions whose paint it carries. */

@@ -60,6 +60,11 @@ void fl_synth_free(FlSynth *synth)
     g_free(synth);
 }
 
+void fl_synth_stop_by(FlSynth *synth, const FlStop *stop)
+{
+    synth->stop = stop;
+}
+
 void fl_synth_measure(FlSynth *synth, bool energies)
 {
     synth->wants_energies = energies;

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_SYNTH_SYNTH_H
 #define FLUIDY_SYNTH_SYNTH_H
 
+#include "base/error.h"
 #include "synth/guide_pairs.h"
 #include "synth/synth_view.h"
 
@@ -19,6 +20,9 @@ typedef struct FlSynthSize {
 FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
                       uint64_t seed);
 void fl_synth_free(FlSynth *synth); // NULL is fine
+
+/** Frames fail with FL_ERROR_INTERRUPTED once `stop`, which must outlive the synthesis, asks so. */
+void fl_synth_stop_by(FlSynth *synth, const FlStop *stop);
 
 /** Switches the energies in the statistics on or off (default: off). They take a fifth of a frame's
  * time; without them they are 0. */

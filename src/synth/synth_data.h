@@ -2,6 +2,7 @@
 #ifndef FLUIDY_SYNTH_SYNTH_DATA_H
 #define FLUIDY_SYNTH_SYNTH_DATA_H
 
+#include "base/error.h"
 #include "synth/rest.h"
 #include "synth/synth_state.h"
 #include "synth/synth_view.h"
@@ -9,6 +10,7 @@
 struct FlSynth {
     const FlExemplar *exemplar;
     const FlParams *params;
+    const FlStop *stop;
     FlCostScale scale;
     FlKernels kernels;
     int width, height, n_levels;

@@ -212,6 +212,8 @@ static bool optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, in
     const uint64_t key = search->key;
     for (int round = 0; round < rounds; round++) {
         const bool last = round + 1 == rounds;
+        if (fl_stop_asked(synth->stop, error))
+            return false;
         search->key = fl_key(key, 2 + (uint64_t)round);
         const FlSearchCounts counts = timed_search(synth, search, sweeps, round > 0);
         stats->counts.drawn += counts.drawn;

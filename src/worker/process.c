@@ -192,12 +192,14 @@ static bool report(const FlProcess *process, int status)
 static void keep_own_files(FlProcess *process)
 {
     int *const own[] = {&process->control, &process->requests, &process->memory, &process->text};
+    const int first = STDERR_FILENO + 1, end = first + (int)G_N_ELEMENTS(own);
     int copy[G_N_ELEMENTS(own)];
     for (size_t i = 0; i < G_N_ELEMENTS(own); i++)
-        copy[i] = fcntl(*own[i], F_DUPFD_CLOEXEC, 64);
+        if ((copy[i] = fcntl(*own[i], F_DUPFD_CLOEXEC, end)) < 0)
+            _exit(1);
     for (size_t i = 0; i < G_N_ELEMENTS(own); i++)
-        *own[i] = dup2(copy[i], 3 + (int)i);
-    closefrom(3 + (int)G_N_ELEMENTS(own));
+        *own[i] = dup2(copy[i], first + (int)i);
+    closefrom(end);
     const int null = open("/dev/null", O_RDWR);
     dup2(null, STDIN_FILENO), dup2(null, STDOUT_FILENO), dup2(process->text, STDERR_FILENO);
     close(null);
