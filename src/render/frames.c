@@ -258,15 +258,18 @@ static bool make_frame(FlFrames *frames, int frame, int next, FlComposite *compo
     return made;
 }
 
-static bool open_wet(FlFrames *frames, int known, GError **error);
+static void begin_wet(FlFrames *frames, int known)
+{
+    frames->marked = -1;
+    fl_wet_begin(frames->wet, known);
+}
 
 /* Marks on wet paper follow from the frames before, as they are composed; older ones are gone. */
 static bool seek_marks(FlFrames *frames, int shown, GError **error)
 {
     const int first = MAX(shown - FL_WET_FRAMES, 0);
-    if ((frames->marked >= shown || frames->marked + 1 < first) &&
-        !open_wet(frames, FL_WET_FRAMES, error))
-        return false;
+    if (frames->marked >= shown || frames->marked + 1 < first)
+        begin_wet(frames, FL_WET_FRAMES);
     bool good = true;
     for (int f = MAX(frames->marked + 1, first); good && f < shown; f++) {
         g_auto(FlComposite) composite = {0};
@@ -343,15 +346,16 @@ static bool wet_motion(void *data, int region, int before, int now, FlRect part,
     return true;
 }
 
-static bool open_wet(FlFrames *frames, int known, GError **error)
+static bool open_wet(FlFrames *frames, GError **error)
 {
     const FlPlan *plan = frames->plan;
     frames->marked = -1;
-    g_clear_pointer(&frames->wet, fl_wet_free);
-    return (frames->painters.motion[1] || frames->motion ||
-            (frames->motion = fl_motion_source_new(plan->drawing, plan->masks, true, error))) &&
-           (frames->wet =
-                fl_wet_new(plan, frames->background.paper, known, wet_motion, frames, error));
+    if (!frames->painters.motion[1] && !frames->motion &&
+        !(frames->motion = fl_motion_source_new(plan->drawing, plan->masks, true, error)))
+        return false;
+    frames->wet =
+        fl_wet_new(plan, frames->background.paper, frames->wet, wet_motion, frames, error);
+    return frames->wet;
 }
 
 /* Frees styles that an earlier plan has used. */
@@ -370,13 +374,15 @@ bool fl_frames_prepare(FlFrames *frames, GError **error)
     FlPainters *painters = &frames->painters;
     const bool wet = fl_wet_wanted(frames->plan);
     fl_painters_recall(painters, frames->plan);
+    if (!wet)
+        g_clear_pointer(&frames->wet, fl_wet_free);
     if (frames->old_plan)
         drop_styles(frames->plan);
     g_clear_pointer(&frames->old_plan, fl_plan_free);
     return (frames->plan->rasterised || !(wet || fl_painters_need_masks(painters)) ||
             fl_plan_rasterise(frames->plan, error)) &&
            fl_frames_tell(frames, "guides", 0, 0, error) && fl_painters_init(painters, error) &&
-           (!wet || open_wet(frames, FL_WET_FRAMES, error));
+           (!wet || open_wet(frames, error));
 }
 
 bool fl_frames_seek(FlFrames *frames, int frame, GError **error)
@@ -389,9 +395,9 @@ bool fl_frames_seek(FlFrames *frames, int frame, GError **error)
 bool fl_frames_start_at(FlFrames *frames, int frame, GError **error)
 {
     const int shown = fl_drawing_shown(frames->plan->drawing, frame);
-    const bool wets = frames->wet && frames->marked != shown - 1;
-    return (!wets || open_wet(frames, WET_IN_DRAFTS, error)) &&
-           seek_painters(frames, shown, fl_painter_start_at, error);
+    if (frames->wet && frames->marked != shown - 1)
+        begin_wet(frames, WET_IN_DRAFTS);
+    return seek_painters(frames, shown, fl_painter_start_at, error);
 }
 
 bool fl_frames_save(const FlFrames *frames, GPtrArray *states, GError **error)
@@ -429,7 +435,9 @@ void fl_frames_follow(FlFrames *frames, FlPlan *plan)
     g_clear_pointer(&frames->draws, g_bytes_unref);
     frames->old_plan = frames->plan, frames->plan = plan;
     frames->drawn = frames->shown = -1;
-    g_clear_pointer(&frames->wet, fl_wet_free);
+    // masks that were taken over are rasterised
+    if (!plan->rasterised || plan->options.paper_seed != frames->old_plan->options.paper_seed)
+        g_clear_pointer(&frames->wet, fl_wet_free);
     g_clear_pointer(&frames->motion, fl_motion_source_free);
 }
 

@@ -66,13 +66,13 @@ static bool mean_half_width(const FlWet *wet, int region, float *width, GError *
 static bool find_size(const FlWet *wet, FlMarker *marker, GError **error)
 {
     const FlRegionPlan *plan = marker->plan;
-    float width = 0;
-    if (!mean_half_width(wet, plan->region, &width, error))
+    float *width = &wet->half_width[plan->region];
+    if (*width < 0 && !mean_half_width(wet, plan->region, width, error))
         return false;
     const float page = FL_WET_PAGE_PX * wet->sheet.px;
     marker->size =
         (1 - fl_ease(0.22f, 0.40f, (float)fl_plan_share_of_page(wet->plan, plan->region))) *
-        fl_ease(0.008f, 0.030f, width / page);
+        fl_ease(0.008f, 0.030f, *width / page);
     return true;
 }
 
@@ -100,7 +100,13 @@ static void find_fill(const FlWet *wet, FlMarker *marker)
 bool fl_wet_make_markers(FlWet *wet, GError **error)
 {
     const FlPlan *plan = wet->plan;
+    const int n = fl_drawing_regions(plan->drawing);
     wet->marker = g_new0(FlMarker, MAX(plan->n_painted, 1));
+    if (!wet->half_width) {
+        wet->half_width = g_new(float, MAX(n, 1));
+        for (int r = 0; r < n; r++)
+            wet->half_width[r] = -1;
+    }
     for (int p = 0; p < plan->n_painted; p++) {
         FlMarker *marker = &wet->marker[wet->n_markers];
         *marker = (FlMarker){.plan = &plan->painted[p]};

@@ -10,17 +10,26 @@
 
 #define CELL_PX 2 // px of a page of FL_WET_PAGE_PX that a cell has, about
 
-FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], int known, FlWetMotion motion,
+/** Takes over what follows from masks and sheet alone. */
+static void take_from(FlWet *wet, FlWet *before)
+{
+    if (!before)
+        return;
+    wet->sheet.grain = g_steal_pointer(&before->sheet.grain);
+    wet->half_width = g_steal_pointer(&before->half_width);
+    fl_wet_free(before);
+}
+
+FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], FlWet *before, FlWetMotion motion,
                   void *data, GError **error)
 {
     const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
     const float page_px = (float)MAX(width, height) / FL_WET_PAGE_PX;
     const int cell = MAX((int)(CELL_PX * page_px + 0.5f), 1);
     g_autoptr(FlWet) wet = g_new0(FlWet, 1);
-    *wet = (FlWet){.plan = plan, .motion = motion, .motion_data = data, .cell = cell, .at = -1};
+    *wet = (FlWet){.plan = plan, .motion = motion, .motion_data = data, .cell = cell};
     memcpy(wet->paper, paper, 3);
-    wet->known = known;
-    wet->lowest_frame = -1;
+    take_from(wet, before);
     const int columns = (width + cell - 1) / cell, rows = (height + cell - 1) / cell;
     const size_t n = (size_t)columns * (size_t)rows;
     const double fps = plan->options.fps > 0 ? plan->options.fps : 24;
@@ -35,19 +44,37 @@ FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], int known, FlWetMo
         !(wet->lowest[1] = fl_alloc(n, sizeof(uint16_t), "regions", error)) ||
         !fl_wet_make_markers(wet, error))
         return NULL;
+    fl_wet_begin(wet, FL_WET_FRAMES);
     return g_steal_pointer(&wet);
+}
+
+void fl_wet_begin(FlWet *wet, int known)
+{
+    wet->known = known;
+    wet->at = wet->lowest_frame = -1;
+    wet->camera_x = wet->camera_y = 0;
+    fl_wet_sheet_begin(&wet->sheet);
+    fl_laid_begin(&wet->laid);
+    for (int m = 0; m < wet->n_markers; m++) {
+        FlMarker *marker = &wet->marker[m];
+        fl_moving_edge_clear(&marker->before);
+        g_array_set_size(marker->fronts, 0);
+        g_array_set_size(marker->stains, 0);
+        marker->rests = false, marker->partner = 0;
+    }
 }
 
 void fl_wet_free(FlWet *wet)
 {
     if (!wet)
         return;
-    for (int m = 0; wet->marker && m < wet->plan->n_painted; m++) {
+    for (int m = 0; m < wet->n_markers; m++) {
         fl_moving_edge_clear(&wet->marker[m].before);
         g_clear_pointer(&wet->marker[m].fronts, g_array_unref);
         g_clear_pointer(&wet->marker[m].stains, g_array_unref);
     }
     g_free(wet->marker);
+    g_free(wet->half_width);
     free(wet->lowest[0]);
     free(wet->lowest[1]);
     free(wet->layer.rgba);

@@ -11,10 +11,14 @@
 bool fl_wet_wanted(const FlPlan *plan);
 
 /** The plan is borrowed, and its masks are rasterised. paper: on which paint is thought to lie.
- * known: frames before the first one that it is known from, FL_WET_FRAMES or, in drafts, less. */
-FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], int known, FlWetMotion motion,
+ * before: that of an earlier plan with the same masks and sheet, which it takes over; or NULL. */
+FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], FlWet *before, FlWetMotion motion,
                   void *data, GError **error);
 void fl_wet_free(FlWet *wet); // NULL is fine
+
+/** Goes back to before any frame. known: frames before the first one that it is known from,
+ * FL_WET_FRAMES or, in drafts, less. */
+void fl_wet_begin(FlWet *wet, int known);
 
 /**
  * Goes on to a frame: the one after that of the last call, or any as the first one. Before that the

@@ -33,6 +33,7 @@ struct FlWet {
     int known; // frames before the first that is composed
     int cell;  // px of the drawing
     FlWetSheet sheet;
+    float *half_width; // of each region where it is widest, cells; below 0: not known yet
     int n_markers;
     FlMarker *marker;
     int camera;               // the region that carries the paper along; -1: the paper stays

@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/curves.h"
 #include <math.h>
+#include <string.h>
 
 #define FRONT_FRAMES 2.2f // in which a front dries
 #define GONE_FRAMES 36    // after which a stain is gone
@@ -27,12 +28,22 @@ bool fl_wet_sheet_init(FlWetSheet *sheet, GError **error)
 {
     const size_t n = fl_rect_pixels(sheet->page);
     const size_t pixels = (size_t)sheet->width * (size_t)sheet->height;
-    sheet->wet = (FlRect){0, 0, 0, 0};
-    if (!(sheet->cell = fl_alloc(n, sizeof *sheet->cell, "the paper's marks", error)) ||
-        !(sheet->grain = fl_alloc_unset(pixels, sizeof *sheet->grain, "paper", error)))
+    if (!(sheet->cell = fl_alloc(n, sizeof *sheet->cell, "the paper's marks", error)))
+        return false;
+    if (sheet->grain)
+        return true;
+    if (!(sheet->grain = fl_alloc_unset(pixels, sizeof *sheet->grain, "paper", error)))
         return false;
     find_grain(sheet);
     return true;
+}
+
+void fl_wet_sheet_begin(FlWetSheet *sheet)
+{
+    memset(sheet->cell, 0, fl_rect_pixels(sheet->page) * sizeof *sheet->cell);
+    sheet->wet = (FlRect){0};
+    sheet->fibres.x = sheet->fibres.y = 0;
+    sheet->shift_x = sheet->shift_y = 0;
 }
 
 void fl_wet_sheet_clear(FlWetSheet *sheet)

@@ -52,8 +52,11 @@ typedef struct FlWetSheet {
     FlRect wet;           // beyond it all cells are dry
 } FlWetSheet;
 
-/** The sizes, px, the time and the seed are set. FL_ERROR_NO_MEMORY. */
+/** The sizes, px, the time and the seed are set, and the grain may be. FL_ERROR_NO_MEMORY. */
 bool fl_wet_sheet_init(FlWetSheet *sheet, GError **error);
+
+/** Makes it dry again. */
+void fl_wet_sheet_begin(FlWetSheet *sheet);
 
 void fl_wet_sheet_clear(FlWetSheet *sheet);
 
