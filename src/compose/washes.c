@@ -30,15 +30,17 @@ static void put_together(const FlWashField *field)
         tone[i] = .28f * fl_clamp(field->side[i] + .45f * slow, -1.3f, 1.3f) + .13f * slow;
         hue[i] = 1.25f * hue[i] + .45f * field->side[i];
     }
-    centre(field, tone);
-    centre(field, hue);
     fl_field_find_breadth(field, breadth);
     memset(pool, 0, n * sizeof *pool);
     fl_field_find_pools(field, pool);
+    for (size_t i = 0; i < n; i++)
+        tone[i] += .38f * wash->style.pool * pool[i];
+    centre(field, tone);
+    centre(field, hue);
     const float quiet = 1 - .45f * fl_smooth(field->size / 300 - 1); // a ground is laid with care
     for (size_t i = 0; i < n; i++) {
         breadth[i] *= quiet;
-        tone[i] = breadth[i] * (tone[i] + .38f * wash->style.pool * pool[i]);
+        tone[i] *= breadth[i];
         hue[i] *= .3f + .7f * breadth[i];
         const float lines = breadth[i] * wash->plane[FL_WASH_LINES][i];
         wash->plane[FL_WASH_LINES][i] = lines;

@@ -184,7 +184,7 @@ static void store(FlParams *params, int index, const Value *value)
 bool fl_params_set(FlParams *params, const char *name, const char *value, GError **error)
 {
     int index = 0;
-    Value parsed;
+    Value parsed = {0}; // analysers do not see that fl_fail() is false
     if (!read_value(name, value, &index, &parsed, error))
         return false;
     store(params, index, &parsed);
