@@ -345,15 +345,30 @@ static bool read_colour(const char *text, Rgba *colour, int depth)
                                                : from_function(name, part, colour));
 }
 
+static uint8_t level_of(double share)
+{
+    return (uint8_t)floor(255 * CLAMP(share, 0, 1) + 0.5);
+}
+
 static char *text_of(const Rgba *colour)
 {
     int v[3];
     for (int i = 0; i < 3; i++)
-        v[i] = (int)floor(255 * CLAMP(colour->c[i], 0, 1) + 0.5);
+        v[i] = level_of(colour->c[i]);
     if (colour->alpha >= 1)
         return g_strdup_printf("rgb(%d, %d, %d)", v[0], v[1], v[2]);
     g_autofree char *alpha = fl_css_number_text(colour->alpha);
     return g_strdup_printf("rgba(%d, %d, %d, %s)", v[0], v[1], v[2], alpha);
+}
+
+bool fl_css_rgba(const char *text, uint8_t rgba[4])
+{
+    Rgba colour = {{0, 0, 0}, 0};
+    if (strcmp(text, "transparent") != 0 && !read_colour(text, &colour, 0))
+        return false;
+    for (int i = 0; i < 4; i++)
+        rgba[i] = level_of(i < 3 ? colour.c[i] : colour.alpha);
+    return true;
 }
 
 char *fl_css_colour(const char *text)

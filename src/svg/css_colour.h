@@ -3,6 +3,7 @@
 #define FLUIDY_SVG_CSS_COLOUR_H
 
 #include "svg/css_scan.h"
+#include <stdint.h>
 
 /**
  * A colour that librsvg draws as a browser does: #rrggbb and its like as they are, all others as
@@ -12,5 +13,9 @@
  * Returns: the text, to be freed; NULL if it is no colour or paint.
  */
 char *fl_css_colour(const char *text);
+
+/** The levels and the opacity of a colour, 0 … 255 as librsvg rounds them. Returns: false if it is
+ * no colour. */
+bool fl_css_rgba(const char *text, uint8_t rgba[4]);
 
 #endif

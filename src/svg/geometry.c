@@ -1,185 +1,23 @@
 #include "svg/geometry.h"
 
-#include "svg/effects.h"
 #include "svg/path_data.h"
-#include "svg/transform.h"
 #include <math.h>
 #include <string.h>
 
-/** The properties that the children of a node inherit. */
-typedef struct Inherited {
-    FlAffine ctm;
-    double width, height; // of the viewport, for percentages
-    bool clipped, evenodd, filled, stroked;
-    double stroke; // width, local units
-    bool broken;   // something could not be parsed
-} Inherited;
-
 typedef struct Reader {
-    double dpi;
-    double width, height;    // px of the page
-    GHashTable *inherited;   // xmlNode -> Inherited
+    FlInheritance inheritance;
     GArray *subpath, *cubic; // FlSubpath, FlCubic
 } Reader;
-
-/* ---- ancestors of a leaf ---- */
-
-/** A length in px; `whole` is what 100% is. */
-static bool length_of(const Reader *reader, const char *text, double whole, double *px)
-{
-    static const struct {
-        const char *name;
-        double inches;
-    } units[] = {{"in", 1}, {"cm", 1 / 2.54}, {"mm", 1 / 25.4}, {"pt", 1 / 72.0}, {"pc", 1 / 6.0}};
-    char *end;
-    const double v = g_ascii_strtod(text, &end);
-    if (end == text || !isfinite(v))
-        return false;
-    *px = v;
-    if (*end == '%')
-        *px = v * whole / 100;
-    else if (g_ascii_isalpha(*end) && strncmp(end, "px", 2) != 0) {
-        for (size_t k = 0; k < G_N_ELEMENTS(units); k++)
-            if (strncmp(end, units[k].name, 2) == 0) {
-                *px = v * units[k].inches * reader->dpi;
-                return true;
-            }
-        return false; // em and the like
-    }
-    return true;
-}
-
-/** An attribute's or property's length, or `initial`; *broken if it cannot be parsed. */
-static double length_in(const Reader *reader, const xmlNode *node, const char *name, double whole,
-                        double initial, bool *broken)
-{
-    g_autofree char *text = fl_property(node, name);
-    double px = initial;
-    if (text && strcmp(text, "auto") != 0 && !length_of(reader, text, whole, &px))
-        *broken = true;
-    return px;
-}
-
-/** Maps a viewBox into a viewport of width x height, as preserveAspectRatio says. */
-static FlAffine fit_box(const double box[4], double width, double height, const char *ratio)
-{
-    double sx = width / box[2], sy = height / box[3];
-    double ax = 0.5, ay = 0.5;
-    if (!ratio || !strstr(ratio, "none")) {
-        const bool slice = ratio && strstr(ratio, "slice");
-        sx = sy = slice ? MAX(sx, sy) : MIN(sx, sy);
-        ax = ratio && strstr(ratio, "xMin") ? 0 : ratio && strstr(ratio, "xMax") ? 1 : 0.5;
-        ay = ratio && strstr(ratio, "YMin") ? 0 : ratio && strstr(ratio, "YMax") ? 1 : 0.5;
-    }
-    return (FlAffine){sx,
-                      0,
-                      0,
-                      sy,
-                      ax * (width - sx * box[2]) - sx * box[0],
-                      ay * (height - sy * box[3]) - sy * box[1]};
-}
-
-static bool view_box(const xmlNode *node, double box[4])
-{
-    g_autoptr(xmlChar) text = fl_attribute(node, "viewBox");
-    const char *s = (const char *)text;
-    for (int k = 0; k < 4; k++) {
-        char *end = NULL;
-        if (!s)
-            return false;
-        s += strspn(s, " \t\r\n\f,");
-        box[k] = g_ascii_strtod(s, &end);
-        if (end == s)
-            return false;
-        s = end;
-    }
-    return box[2] > 0 && box[3] > 0;
-}
-
-/** An <svg>: its place, its viewport and its viewBox. */
-static void enter_viewport(const Reader *reader, const xmlNode *node, Inherited *s)
-{
-    const bool outermost = !node->parent || node->parent->type != XML_ELEMENT_NODE;
-    const double w = s->width, h = s->height;
-    bool *broken = &s->broken;
-    double box[4] = {0, 0, 0, 0};
-    const bool boxed = view_box(node, box);
-    g_autoptr(xmlChar) ratio = fl_attribute(node, "preserveAspectRatio");
-    if (outermost) { // the page is its viewport; without a viewBox its size is one
-        if (!boxed) {
-            box[2] = length_in(reader, node, "width", 0, 0, broken);
-            box[3] = length_in(reader, node, "height", 0, 0, broken);
-        }
-    } else {
-        const double x = length_in(reader, node, "x", w, 0, broken);
-        const double y = length_in(reader, node, "y", h, 0, broken);
-        const FlAffine place = {1, 0, 0, 1, x, y};
-        s->width = length_in(reader, node, "width", w, w, broken);
-        s->height = length_in(reader, node, "height", h, h, broken);
-        s->ctm = fl_affine_multiply(&s->ctm, &place);
-        g_autofree char *overflow = fl_property(node, "overflow");
-        const bool shown =
-            overflow && (g_str_equal(overflow, "visible") || g_str_equal(overflow, "auto"));
-        s->clipped |= !shown;
-    }
-    if (box[2] > 0 && box[3] > 0) {
-        const FlAffine fit = fit_box(box, s->width, s->height, (const char *)ratio);
-        s->ctm = fl_affine_multiply(&s->ctm, &fit);
-        s->width = box[2], s->height = box[3];
-    }
-}
-
-static void enter_properties(const Reader *reader, const xmlNode *node, Inherited *s)
-{
-    s->clipped |=
-        fl_is_set(node, "clip-path") || fl_is_set(node, "mask") || fl_is_set(node, "filter");
-    g_autofree char *rule = fl_property(node, "fill-rule"), *fill = fl_property(node, "fill");
-    g_autofree char *stroke = fl_property(node, "stroke");
-    if (rule)
-        s->evenodd = strcmp(rule, "evenodd") == 0;
-    if (fill)
-        s->filled = strcmp(fill, "none") != 0;
-    if (stroke)
-        s->stroked = strcmp(stroke, "none") != 0;
-    bool ignored = false;
-    const double mean = sqrt((s->width * s->width + s->height * s->height) / 2);
-    s->stroke = length_in(reader, node, "stroke-width", mean, s->stroke, &ignored);
-}
-
-static Inherited inherited_by(Reader *reader, const xmlNode *node)
-{
-    const Inherited page = {.ctm = FL_AFFINE_NONE,
-                            .width = reader->width,
-                            .height = reader->height,
-                            .filled = true,
-                            .stroke = 1};
-    if (!node || node->type != XML_ELEMENT_NODE)
-        return page;
-    const Inherited *known = g_hash_table_lookup(reader->inherited, node);
-    if (known)
-        return *known;
-    Inherited s = inherited_by(reader, node->parent);
-    const FlAffine m = fl_affine_of(node);
-    s.ctm = fl_affine_multiply(&s.ctm, &m);
-    if (fl_is(node, "svg"))
-        enter_viewport(reader, node, &s);
-    enter_properties(reader, node, &s);
-    if (node->children) {
-        Inherited *copy = g_new(Inherited, 1);
-        *copy = s;
-        g_hash_table_insert(reader->inherited, (gpointer)node, copy);
-    }
-    return s;
-}
 
 /* ---- leaves ---- */
 
 /** Draws a basic shape. Returns: what it is. */
-static FlOutlineKind draw_shape(const Reader *reader, const xmlNode *node, const Inherited *s,
+static FlOutlineKind draw_shape(const Reader *reader, const xmlNode *node, const FlInherited *s,
                                 FlPen *pen, bool *broken)
 {
     const double w = s->width, h = s->height, mean = sqrt((w * w + h * h) / 2);
-#define LENGTH(name, whole, initial) length_in(reader, node, name, whole, initial, broken)
+#define LENGTH(name, whole, initial)                                                               \
+    fl_length_in(&reader->inheritance, node, name, whole, initial, broken)
     if (fl_is(node, "circle")) {
         const double r = LENGTH("r", mean, 0);
         fl_pen_ellipse(pen, LENGTH("cx", w, 0), LENGTH("cy", h, 0), r, r);
@@ -214,7 +52,7 @@ static FlOutlineKind draw_shape(const Reader *reader, const xmlNode *node, const
     return FL_OUTLINE_NONE;
 }
 
-static FlOutlineKind draw_leaf(const Reader *reader, const xmlNode *node, const Inherited *s,
+static FlOutlineKind draw_leaf(const Reader *reader, const xmlNode *node, const FlInherited *s,
                                FlPen *pen, bool *broken)
 {
     if (!fl_is(node, "path"))
@@ -261,15 +99,16 @@ static FlGeometry read_leaf(Reader *reader, const FlLeaf *leaf, const xmlNode *n
     FlGeometry g;
     memset(&g, 0, sizeof g); // clears the padding, since the struct is stored as bytes
     FlPen pen = {.subpath = reader->subpath, .cubic = reader->cubic};
-    const Inherited s = inherited_by(reader, node);
+    const FlInherited s = fl_inherited_by(&reader->inheritance, node);
     bool broken = s.broken;
     const guint first = reader->cubic->len;
     g.first_subpath = (int32_t)reader->subpath->len;
     g.ctm = s.ctm;
     g.kind = (uint8_t)draw_leaf(reader, node, &s, &pen, &broken);
     g.n_subpaths = (int32_t)reader->subpath->len - g.first_subpath;
-    g.clipped = s.clipped, g.evenodd = s.evenodd, g.filled = s.filled;
-    g.stroke = s.stroked ? s.stroke : 0;
+    g.clipped = s.clipped, g.evenodd = s.evenodd;
+    g.filled = strcmp(s.fill, "none") != 0;
+    g.stroke = strcmp(s.stroke, "none") != 0 ? s.stroke_width : 0;
     g.usable =
         !broken && g.kind != FL_OUTLINE_NONE && g.n_subpaths > 0 &&
         is_finite(&g, &g_array_index(reader->cubic, FlCubic, first), reader->cubic->len - first);
@@ -302,8 +141,8 @@ FlOutlines *fl_outlines_of_shape(const xmlNode *node, double dpi, FlPageSize vie
 {
     g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
     g_autoptr(GArray) cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic));
-    const Reader reader = {.dpi = dpi};
-    const Inherited inherited = {.width = viewport.width, .height = viewport.height};
+    const Reader reader = {.inheritance = {.dpi = dpi}};
+    const FlInherited inherited = {.width = viewport.width, .height = viewport.height};
     FlPen pen = {.subpath = subpath, .cubic = cubic};
     bool broken = false;
     draw_leaf(&reader, node, &inherited, &pen, &broken);
@@ -318,10 +157,9 @@ FlOutlines *fl_outlines_new(xmlDoc *doc, const FlLeaves *list, double dpi, FlPag
 {
     const GArray *leaves = list->leaf;
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
-    g_autoptr(GHashTable) inherited = g_hash_table_new_full(NULL, NULL, NULL, g_free);
     g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
     g_autoptr(GArray) cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic));
-    Reader reader = {dpi, page.width, page.height, inherited, subpath, cubic};
+    Reader reader = {fl_inheritance_of(dpi, page), subpath, cubic};
     g_autofree FlGeometry *read = g_new0(FlGeometry, leaves->len + 1);
     for (guint i = 0; i < leaves->len; i++) {
         const FlLeaf *leaf = &g_array_index(leaves, FlLeaf, i);
@@ -332,6 +170,7 @@ FlOutlines *fl_outlines_new(xmlDoc *doc, const FlLeaves *list, double dpi, FlPag
     FlOutlines *outlines = outlines_of((int)leaves->len, (int)subpath->len, (int)cubic->len);
     memcpy(outlines->leaf, read, leaves->len * sizeof *read);
     take_curves(outlines, subpath, cubic);
+    fl_inheritance_clear(&reader.inheritance);
     return outlines;
 }
 

@@ -2,13 +2,9 @@
 #ifndef FLUIDY_SVG_GEOMETRY_H
 #define FLUIDY_SVG_GEOMETRY_H
 
+#include "svg/inherited.h"
 #include "svg/leaves.h"
 #include "svg/pen.h"
-
-/** The size of a page when it is drawn, px; above 0. */
-typedef struct FlPageSize {
-    double width, height;
-} FlPageSize;
 
 typedef enum FlOutlineKind {
     FL_OUTLINE_NONE, // text, an image, a group drawn as one: no outline

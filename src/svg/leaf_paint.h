@@ -1,4 +1,4 @@
-/* The computed paint of a leaf, read from librsvg's drawing commands: no CSS engine of our own. */
+/* The computed paint of a leaf, read from the document as the cascade left it. */
 #ifndef FLUIDY_SVG_LEAF_PAINT_H
 #define FLUIDY_SVG_LEAF_PAINT_H
 
@@ -38,20 +38,11 @@ typedef struct FlPainted {
     FlPart part;
     bool stroke;            // the part consists of strokes only
     FlBlendMode blend_mode; // of the whole part; OVER if it has several modes
-    float width;            // of its widest stroke, px of the page it was read on; 0: no stroke
+    float width;            // of its widest stroke, share of the page's longer side; 0: no stroke
     FlSvgPaint paint;
 } FlPainted;
 
 #define FL_MOST_PARTS 2
-
-/**
- * Reads the drawing commands that cairo's script surface wrote for one leaf.
- *
- * whole: fill and stroke are not separated. A leaf whose fill and stroke have the same opaque paint
- * is one part, and so is one with a blend mode. Returns: the number of parts, bottom up; 0 if the
- * leaf is invisible.
- */
-int fl_svg_paint_parse(const char *script, bool whole, FlPainted parts[FL_MOST_PARTS]);
 
 void fl_svg_paint_clear(FlSvgPaint *paint);
 

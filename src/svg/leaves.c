@@ -13,7 +13,6 @@ typedef struct Walk {
     GHashTable *by_id; // id -> xmlNode, the first with that id
     int unit;          // outermost unit around; -1 outside units
     int mask;          // innermost group around with a mask; -1 without masks
-    bool effects;      // a group around has some
     int n_made;        // ids made
 } Walk;
 
@@ -105,16 +104,6 @@ static bool has_text(const xmlNode *node)
     return found;
 }
 
-/** Returns: true if librsvg may draw a node, or a descendant, on a separate surface: a remaining
- * <use> may also show an element with effects. */
-static bool has_effects(const xmlNode *node)
-{
-    bool found = fl_is(node, "image") || fl_is(node, "use") || fl_has_effects(node);
-    for (const xmlNode *child = node->children; child && !found; child = child->next)
-        found = child->type == XML_ELEMENT_NODE && has_effects(child);
-    return found;
-}
-
 static bool is_listed(const Walk *w, const char *key)
 {
     return w->whole && g_strv_contains(w->whole, key);
@@ -162,7 +151,6 @@ static FlLeaf make_leaf(Walk *w, xmlNode *node)
         .tree = g_strdup(w->tree->str),
         .unit = w->unit,
         .text = has_text(node),
-        .effects = w->effects || has_effects(node),
     };
     g_autofree char *key = fl_leaf_key(&leaf);
     leaf.whole = whole || is_listed(w, key);
@@ -261,9 +249,7 @@ static void walk(Walk *w, xmlNode *node)
         if (fl_is_undrawn(child) || is_hidden(child))
             continue;
         const Mark m = mark(w);
-        const bool effects_around = w->effects;
         enter(w, child, index);
-        w->effects |= fl_is_container(child) && fl_has_effects(child);
         if (is_drawn(child) || fl_is_whole(child, w->whole)) {
             const FlLeaf leaf = make_leaf(w, child);
             g_array_append_val(w->leaves->leaf, leaf);
@@ -273,7 +259,6 @@ static void walk(Walk *w, xmlNode *node)
             walk_group(w, child);
         }
         cut_back(w, m);
-        w->effects = effects_around;
     }
 }
 
@@ -329,7 +314,6 @@ FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole)
               .unit = -1,
               .mask = -1};
     w.by_id = fl_document_ids(doc);
-    w.effects = fl_has_effects(xmlDocGetRootElement(doc));
     if (whole && g_strv_contains(whole, FL_WHOLE_ALL))
         add_all(&w, xmlDocGetRootElement(doc));
     else

@@ -99,7 +99,7 @@ static bool has_features(const char *features)
     return true;
 }
 
-static bool is_eligible(const xmlNode *node)
+bool fl_is_eligible(const xmlNode *node)
 {
     g_autoptr(xmlChar) features = fl_attribute(node, "requiredFeatures");
     if (features && !has_features((const char *)features))
@@ -119,7 +119,7 @@ static void resolve_switch(xmlNode *node)
         next = child->next;
         if (child->type != XML_ELEMENT_NODE)
             continue;
-        if (!chosen && is_eligible(child)) {
+        if (!chosen && fl_is_eligible(child)) {
             chosen = true;
         } else {
             xmlUnlinkNode(child);

@@ -32,6 +32,9 @@ bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *pa
 /** Returns: true if fl_document_normalise() has work: the document draws a <use> or <switch>. */
 bool fl_document_is_rewritten(const xmlDoc *doc);
 
+/** Returns: true if a <switch> may show this child. */
+bool fl_is_eligible(const xmlNode *node);
+
 /** Returns: true if children of node are drawn only by reference: <defs>, <mask>, … */
 bool fl_is_undrawn(const xmlNode *node);
 

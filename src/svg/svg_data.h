@@ -9,13 +9,6 @@
 
 typedef struct FlSvg FlSvg;
 
-/** Tells if any leaf is parked far off the page. */
-typedef enum FlFar {
-    FL_FAR_UNKNOWN,
-    FL_FAR_NONE,
-    FL_FAR_SOME,
-} FlFar;
-
 /** The combined coverage of a group's mask and the outer masks, on a page of that size. */
 typedef struct FlMaskCover {
     cairo_surface_t *surface; // A8; NULL: not drawn yet
@@ -30,10 +23,12 @@ struct FlSvg {
     size_t original_bytes;
     RsvgHandle *handle; // of the normalised document
     RsvgHandle *before; // of the original, made when first needed
-    bool reads_copies;  // paints of all leaves are read from a copy; else of those with effects
-    FlFar far;
-    int n_nameless;       // groups without an id
-    GHashTable *variants; // handles of the document without some parts or masks
+    GHashTable *ids;    // of the document, made when first needed, as is what elements inherit
+    FlInheritance inheritance;
+    xmlDoc *other;         // a file from which it takes gradients; NULL: not read
+    GHashTable *other_ids; // of that
+    int n_nameless;        // groups without an id
+    GHashTable *variants;  // handles of the document without some parts or masks
     FlLeaves *leaves;
     FlMaskCover *cover; // by FlLeaves.mask; NULL: cannot be drawn
     size_t cover_bytes; // of their surfaces
@@ -44,7 +39,6 @@ struct FlSvg {
 typedef enum FlPurpose {
     FL_TO_DRAW,
     FL_TO_DRAW_BARE, // without the masks of FlLeaves.mask
-    FL_TO_READ,      // without masks as well; see fl_paint_probe_prepare()
     FL_N_PURPOSES
 } FlPurpose;
 

@@ -10,7 +10,6 @@
 #include "svg/layer_frames.h"
 #include "svg/lint.h"
 #include "svg/normalise.h"
-#include "svg/paint_probe.h"
 #include "svg/svg_data.h"
 #include <math.h>
 
@@ -86,7 +85,6 @@ FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, Fl
     g_autoptr(FlSvg) svg = fl_svg_read(path, number, options, warnings, error);
     if (!svg)
         return NULL;
-    svg->reads_copies = fl_paint_probe_is_needed(svg->doc);
     fl_document_branch(svg->doc);
     svg->variants = g_hash_table_new_full(NULL, NULL, NULL, g_object_unref);
     svg->cover = g_new0(FlMaskCover, svg->leaves->mask->len + 1);
@@ -105,6 +103,10 @@ void fl_svg_free(FlSvg *svg)
     g_clear_pointer(&svg->variants, g_hash_table_unref);
     fl_svg_drop_covers(svg);
     g_free(svg->cover);
+    g_clear_pointer(&svg->ids, g_hash_table_unref);
+    fl_inheritance_clear(&svg->inheritance);
+    g_clear_pointer(&svg->other_ids, g_hash_table_unref);
+    g_clear_pointer(&svg->other, xmlFreeDoc);
     fl_leaves_free(svg->leaves);
     g_clear_pointer(&svg->files, g_ptr_array_unref);
     if (svg->doc)

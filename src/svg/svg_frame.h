@@ -61,11 +61,11 @@ xmlDoc *fl_svg_document(const FlSvg *svg);
 FlOutlines *fl_svg_outlines(const FlSvg *svg, FlPageSize page);
 
 /**
- * The computed paints of a leaf. FlPainted.width is a share of the page's longer side.
- * Returns: the number of parts, bottom up, 0 if the leaf is invisible; -1 with FL_ERROR_INPUT.
+ * The computed paints of a leaf. A leaf whose fill and stroke have the same opaque paint is one
+ * part, and so is one with a blend mode.
+ * Returns: the number of parts, bottom up, which need not cover anything; 0 if it has no paint.
  */
-int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS],
-                       GError **error);
+int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS]);
 
 /**
  * Draws a part of a leaf at its place in the picture, with its clip, mask and groups. The drawing

@@ -1,5 +1,4 @@
 #include "svg/group_mask.h"
-#include "svg/paint_probe.h"
 #include "svg/svg_data.h"
 #include <string.h>
 
@@ -81,8 +80,6 @@ RsvgHandle *fl_svg_handle(FlSvg *svg, FlPart part, FlPurpose purpose, GError **e
     keep_part(copy, svg->leaves, part);
     if (purpose != FL_TO_DRAW)
         fl_group_masks_drop(copy, svg->leaves);
-    if (purpose == FL_TO_READ)
-        fl_paint_probe_prepare(copy);
     return add_variant(svg, key, copy, error);
 }
 

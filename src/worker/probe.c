@@ -1,6 +1,5 @@
 #include "worker/probe.h"
 
-#include "svg/leaf_digest.h"
 #include <math.h>
 #include <string.h>
 
@@ -23,49 +22,16 @@ static GArray *new_probes(void)
     return probes;
 }
 
-/** Adds copies of parts, from `first` on. */
-static void add_probes(GArray *probes, const GArray *parts, guint first)
+bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, FlPageSize page, int width, int height,
+                         GError **error)
 {
-    for (guint i = first; i < parts->len; i++) {
-        FlProbe copy = g_array_index(parts, FlProbe, i);
-        copy.paint = g_strdup(copy.paint);
-        if (copy.kept)
-            g_bytes_ref(copy.kept);
-        g_array_append_val(probes, copy);
-    }
-}
-
-/** Adds the size of the page to digests that are known. */
-static void add_page(const FlFrameProbe *f, FlDigest *digest, guint n)
-{
-    const double page[] = {f->page.width, f->page.height, f->factor, f->full_width, f->full_height};
-    for (guint i = 0; i < n; i++)
-        if (fl_digest_is_known(digest[i]))
-            fl_digest_add(&digest[i], page, sizeof page);
-}
-
-/** Digests what the leaves and units look like on the page. */
-static void digest_leaves(FlFrameProbe *f)
-{
-    const FlLeaves *leaves = fl_svg_leaves(f->svg);
-    f->leaf_digest = g_new(FlDigest, leaves->leaf->len + 1);
-    f->unit_digest = g_new(FlDigest, leaves->unit->len + 1);
-    fl_leaf_digests(f->svg, f->leaf_digest, f->unit_digest);
-    add_page(f, f->leaf_digest, leaves->leaf->len);
-    add_page(f, f->unit_digest, leaves->unit->len);
-}
-
-bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, FlFrameCache *cache, FlPageSize page,
-                         int width, int height, GError **error)
-{
-    *f = (FlFrameProbe){.svg = svg, .cache = cache, .full_width = width, .full_height = height};
+    *f = (FlFrameProbe){.svg = svg, .full_width = width, .full_height = height};
     f->factor = MAX(1, (double)MAX(width, height) / PROBE_PX);
     f->page.width = page.width / f->factor;
     f->page.height = page.height / f->factor;
     f->all =
         (FlRect){0, 0, MAX(1, (int)ceil(width / f->factor)), MAX(1, (int)ceil(height / f->factor))};
     f->probes = new_probes();
-    digest_leaves(f);
     f->coverage = fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error);
     f->check = f->coverage ? fl_self_check_new(f->all.width, f->all.height, error) : NULL;
     return f->check != NULL;
@@ -76,8 +42,6 @@ void fl_frame_probe_clear(FlFrameProbe *f)
     if (f->probes)
         g_array_unref(f->probes);
     fl_outlines_free(f->outlines);
-    g_free(f->leaf_digest);
-    g_free(f->unit_digest);
     fl_svg_free(f->svg);
     if (f->coverage)
         cairo_surface_destroy(f->coverage);
@@ -226,29 +190,12 @@ static void relate_parts(GArray *probes, guint first)
     }
 }
 
-/** See FlSurveyPart.width. The page that a paint was read on fits into a square. */
+/** See FlSurveyPart.width. */
 static float width_of(const FlFrameProbe *f, const FlLeaf *leaf, const FlPainted *p)
 {
     if (leaf->whole || leaf->text || (p->width > 0 && !p->stroke))
         return -1;
     return p->stroke ? p->width * (float)(MAX(f->page.width, f->page.height) * f->factor) : 0;
-}
-
-/** Adds the parts of a leaf that looks as one did in the frame before. */
-static bool add_known(FlFrameProbe *f, const FlLeaf *leaf, int index, FlDigest digest)
-{
-    const guint first = f->probes->len;
-    const GArray *parts = fl_frame_cache_find(f->cache, digest);
-    if (!parts)
-        return false;
-    add_probes(f->probes, parts, 0);
-    for (guint i = first; i < f->probes->len; i++) {
-        FlProbe *probe = &g_array_index(f->probes, FlProbe, i);
-        probe->leaf = leaf;
-        probe->found.leaf = index;
-        probe->found.unit = index < 0 ? -index : 0;
-    }
-    return true;
 }
 
 /** The pose of a leaf or unit; of what has no outline the middle alone. */
@@ -266,12 +213,9 @@ static FlPose pose_of(FlFrameProbe *f, const FlLeaf *leaf, int index)
 static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **error)
 {
     const guint first = f->probes->len;
-    const FlDigest digest = index < 0 ? f->unit_digest[-1 - index] : f->leaf_digest[index];
-    if (add_known(f, leaf, index, digest))
-        return true;
     FlPainted parts[FL_MOST_PARTS];
-    const int n = fl_svg_leaf_paints(f->svg, leaf, parts, error);
-    bool good = n >= 0;
+    const int n = fl_svg_leaf_paints(f->svg, leaf, parts);
+    bool good = true;
     const FlPose pose = n > 0 ? pose_of(f, leaf, index) : (FlPose){0};
     for (int i = 0; i < n; i++) {
         const FlPainted *p = &parts[i];
@@ -308,11 +252,6 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **
             g_array_set_size(f->probes, f->probes->len - 1);
     }
     relate_parts(f->probes, first);
-    if (good && fl_digest_is_known(digest)) {
-        GArray *kept = new_probes();
-        add_probes(kept, f->probes, first);
-        fl_frame_cache_keep(f->cache, digest, kept);
-    }
     return good;
 }
 

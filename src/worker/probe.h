@@ -2,7 +2,6 @@
 #ifndef FLUIDY_WORKER_PROBE_H
 #define FLUIDY_WORKER_PROBE_H
 
-#include "base/frame_cache.h"
 #include "worker/raster.h"
 #include "worker/self_check.h"
 
@@ -27,10 +26,8 @@ typedef struct FlFrameProbe {
     int full_width, full_height;
     FlRect all;
     GArray *probes;
-    FlFrameCache *cache;                 // borrowed; arrays of FlProbe
-    FlOutlines *outlines;                // of all leaves; made when first needed
-    FlDigest *leaf_digest, *unit_digest; // of what the leaves and units look like
-    size_t kept_bytes;                   // of the probes
+    FlOutlines *outlines; // of all leaves; made when first needed
+    size_t kept_bytes;    // of the probes
     FlSelfCheck *check;
 } FlFrameProbe;
 
@@ -38,8 +35,8 @@ typedef struct FlFrameProbe {
  * Opens what `svg` shows; the probe owns svg then. `page` is in px of a picture of width * height.
  * Clear it with fl_frame_probe_clear(), also after an error.
  */
-bool fl_frame_probe_init(FlFrameProbe *probe, FlSvg *svg, FlFrameCache *cache, FlPageSize page,
-                         int width, int height, GError **error);
+bool fl_frame_probe_init(FlFrameProbe *probe, FlSvg *svg, FlPageSize page, int width, int height,
+                         GError **error);
 
 /** Finds the parts, bottom up, and draws them over each other for the self-check. */
 bool fl_frame_probe_run(FlFrameProbe *probe, GError **error);

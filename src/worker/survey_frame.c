@@ -54,7 +54,6 @@ void fl_survey_frame_clear(FlSurveyFrame *frame)
 /** The survey of one frame in progress. */
 typedef struct Survey {
     const FlRequest *request;
-    FlFrameCache *cache;
     FlSvg *svg; // opened already; NULL: not
     FlSurveyFrame *frame;
     FlWarnings *warnings;
@@ -84,8 +83,8 @@ static bool open_frame(Survey *s, FlFrameProbe *probe, GError **error)
     s->frame->n_nameless = fl_svg_nameless_groups(svg);
     g_strfreev(s->frame->files);
     s->frame->files = copy_of(fl_svg_files(svg));
-    return fl_frame_probe_init(probe, g_steal_pointer(&svg), s->cache, s->frame->page, r->width,
-                               r->height, error);
+    return fl_frame_probe_init(probe, g_steal_pointer(&svg), s->frame->page, r->width, r->height,
+                               error);
 }
 
 /** Draws a frame leaf by leaf and compares it with the file; see fl_self_check_finish(). */
@@ -216,17 +215,16 @@ static bool scan_frame(Survey *s, FlFrameProbe *f, GError **error)
     }
 }
 
-bool fl_survey_frame(const FlRequest *request, FlFrameCache *cache, FlSvg *svg,
-                     FlSurveyFrame *frame, FlStrings *strings, FlWarnings *warnings, GError **error)
+bool fl_survey_frame(const FlRequest *request, FlSvg *svg, FlSurveyFrame *frame, FlStrings *strings,
+                     FlWarnings *warnings, GError **error)
 {
     *frame = (FlSurveyFrame){.whole = g_strdupv((char **)request->svg.whole)};
     fl_strings_add(strings, "");
-    Survey s = {request, cache, svg, frame, warnings};
+    Survey s = {request, svg, frame, warnings};
     g_auto(FlFrameProbe) probe = {0};
     const bool good = scan_frame(&s, &probe, error);
     if (good)
         keep(&probe, strings, frame);
-    fl_frame_cache_next_frame(cache);
     fl_svg_free(s.svg);
     return good;
 }

@@ -2,7 +2,6 @@
 #ifndef FLUIDY_WORKER_SURVEY_FRAME_H
 #define FLUIDY_WORKER_SURVEY_FRAME_H
 
-#include "base/frame_cache.h"
 #include "worker/messages.h"
 
 /**
@@ -11,9 +10,8 @@
  *
  * Returns: false with an error, which names the file. The frame is to be cleared either way.
  */
-bool fl_survey_frame(const FlRequest *request, FlFrameCache *cache, FlSvg *svg,
-                     FlSurveyFrame *frame, FlStrings *strings, FlWarnings *warnings,
-                     GError **error);
+bool fl_survey_frame(const FlRequest *request, FlSvg *svg, FlSurveyFrame *frame, FlStrings *strings,
+                     FlWarnings *warnings, GError **error);
 
 bool fl_has_group(char **groups, const char *group); // NULL: none
 

@@ -15,7 +15,6 @@ static void forget_measured(FlServant *servant)
 void fl_servant_clear(FlServant *servant)
 {
     forget_measured(servant);
-    fl_frame_cache_clear(&servant->probes);
 }
 
 /* ---- count and measure ----------------------------------------------------------------------- */
@@ -30,12 +29,11 @@ static bool count(const FlRequest *r, GByteArray *out, GError **error)
     return true;
 }
 
-/** Adds where a leaf is, if it is drawn. Returns: false with an error. */
-static bool add_shape(GArray *shapes, FlSvg *svg, const FlLeaf *leaf, FlPageSize page,
-                      GError **error)
+/** Adds where a leaf is, if it is drawn. */
+static void add_shape(GArray *shapes, FlSvg *svg, const FlLeaf *leaf, FlPageSize page)
 {
     FlPainted parts[FL_MOST_PARTS];
-    const int n = fl_svg_leaf_paints(svg, leaf, parts, error);
+    const int n = fl_svg_leaf_paints(svg, leaf, parts);
     const RsvgRectangle box = fl_svg_extents(svg, leaf, page);
     FlShape shape = {0, box.x, box.y, box.width, box.height};
     for (int k = 0; k < n; k++) {
@@ -44,7 +42,6 @@ static bool add_shape(GArray *shapes, FlSvg *svg, const FlLeaf *leaf, FlPageSize
     }
     if (n > 0 && shape.width > 0 && shape.height > 0)
         g_array_append_val(shapes, shape);
-    return n >= 0;
 }
 
 static bool measure(FlServant *servant, const FlRequest *r, GByteArray *out, GError **error)
@@ -58,9 +55,8 @@ static bool measure(FlServant *servant, const FlRequest *r, GByteArray *out, GEr
         return false;
     const GArray *leaves = fl_svg_leaves(servant->measured)->leaf;
     for (guint i = 0; r->shapes && i < leaves->len; i++)
-        if (!add_shape(shapes, servant->measured, &g_array_index(leaves, FlLeaf, i),
-                       (FlPageSize){m.width, m.height}, error))
-            return false;
+        add_shape(shapes, servant->measured, &g_array_index(leaves, FlLeaf, i),
+                  (FlPageSize){m.width, m.height});
     fl_measures_pack(&m, out);
     servant->file = g_strdup(r->file);
     servant->svg = r->svg;
@@ -91,7 +87,7 @@ static bool survey(FlServant *servant, const FlRequest *r, GByteArray *out, GErr
     g_autoptr(FlWarnings) warnings = open ? g_steal_pointer(&servant->remarks) : fl_warnings_new();
     FlSvg *svg = open ? g_steal_pointer(&servant->measured) : NULL;
     forget_measured(servant);
-    if (!fl_survey_frame(r, &servant->probes, svg, &frame, &strings, warnings, error))
+    if (!fl_survey_frame(r, svg, &frame, &strings, warnings, error))
         return false;
     fl_survey_pack(&frame, &strings, warnings, out);
     return true;

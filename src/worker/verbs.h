@@ -2,12 +2,10 @@
 #ifndef FLUIDY_WORKER_VERBS_H
 #define FLUIDY_WORKER_VERBS_H
 
-#include "base/frame_cache.h"
 #include "worker/messages.h"
 
-/** State between requests: parts at rest are read once. Zero is the empty state. */
+/** State between requests. Zero is the empty state. */
 typedef struct FlServant {
-    FlFrameCache probes;
     FlSvg *measured;     // the frame that was measured last
     char *file;          // its file
     FlSvgOptions svg;    // its options; `whole` is NULL
