@@ -49,15 +49,20 @@ class Page:
     def message(self):
         """A state or another message, or the six numbers of a picture, which is thanked for."""
         kind, size = self.file.read(2)
-        size = struct.unpack(">H", self.file.read(2))[0] if size == 126 else struct.unpack(">Q", self.file.read(8))[0] if size == 127 else size
+        for short, bytes_ in (126, 2), (127, 8):
+            if size == short:
+                size = int.from_bytes(self.file.read(bytes_), "big")
+                break
         data = self.file.read(size)
         if kind & 15 == 1:
             return json.loads(data)
+        if kind & 15 != 2:  # a ping
+            return None
         self.connection.sendall(bytes([0x81, 0x84]) + b"\0\0\0\0more")
         return struct.unpack("<6I", data[:24])
 
     def until(self, true):
-        while not true(message := self.message()):
+        while (message := self.message()) is None or not true(message):
             pass
         return message
 

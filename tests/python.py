@@ -113,7 +113,7 @@ flow[..., 0] = 3
 tell("with their motion", (fluidy.paint(masks, style, flow=flow, seed=2, tint="#112233")[2] != cut[2]).any())
 tell("of the same size", raises(fluidy.UsageError, "flow", lambda: fluidy.paint(masks, style, flow=flow[:2])))
 
-example = re.search(r"\.Bd.*?\n(.*?)\.Ed", open(manual).read(), re.S)[1].replace('style="01"', f"style={style!r}")
+example = re.search(r"\.Bd.*?\n(.*?)\.Ed", open(manual).read(), re.S)[1].replace('style="01"', f"style={style!r}").replace("240", "64")
 out = os.dup(1)
 os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 sys.stdout.flush()
