@@ -135,7 +135,7 @@ static void the_fill_stays_the_fill(void)
     spread_of(tones, spread);
     g_test_message("ln of amounts from %.2f, median %.2f, to %.2f", spread[0], spread[1],
                    spread[2]);
-    g_assert_cmpfloat(fabsf(spread[1]), <, .06f); // 1 L*
+    g_assert_cmpfloat(fabsf(spread[1]), <, .05f); // 1 L*
     g_assert_cmpfloat(spread[0], <, -.2f);
     g_assert_cmpfloat(spread[2], >, .2f);
     double upper = 0, lower = 0;
@@ -169,7 +169,7 @@ static void each_of_many_fills_stays(void)
         g_test_message("mean of ln %.3f, of play %.3f", tone[k] / n[k],
                        play[k] / n[k] / FL_PLAY_ONE);
         g_assert_cmpfloat(shadow[k] / n[k], >, .03);
-        g_assert_cmpfloat(fabs(tone[k] / n[k]), <, .03);
+        g_assert_cmpfloat(fabs(tone[k] / n[k]), <, .02);
         g_assert_cmpfloat(fabs(play[k] / n[k] / FL_PLAY_ONE), <, .3);
     }
 }
@@ -256,7 +256,7 @@ static void a_limb_carries_its_own(void)
         }
     g_test_message("correlation %.3f along the limb, %.3f on the page", correlation(a, b, n),
                    correlation(a, same, n));
-    g_assert_cmpfloat(correlation(a, b, n), >, .85); // the light does not turn
+    g_assert_cmpfloat(correlation(a, b, n), >, .75); // the light does not turn
 }
 
 static void still_figures_do_not_change(void)

@@ -26,9 +26,9 @@ typedef struct FlWashField {
     float *planes; // memory of the planes below and of the parts' weights
     float *mask;   // coverage at each point, as if no other shape lay over it
     float *side;   // -1 light side .. 1 shadow side
-    float *around; // mean coverage around each point, as far as the shapes are large
+    float *around; // the mask, spread as far as the shapes are large
     float *room[FL_WASH_ROOMS];
-    float *turned; // two planes: scratch of fl_field_blur()
+    float *turned; // three planes: scratch of blurs
 } FlWashField;
 
 static inline size_t fl_wash_points(const FlWash *wash)
@@ -46,10 +46,9 @@ void fl_field_clear(FlWashField *field);
 /** Blurs a plane of all points by sigma_px of the page. */
 void fl_field_blur(const FlWashField *field, float *plane, float sigma_px);
 
-/** The mean of a plane within the shapes around each point: nothing leaks in over the contour.
- * around: the mask, as blurred. */
-void fl_field_blur_inside(const FlWashField *field, float *plane, float sigma_px,
-                          const float *around);
+/** Takes the mean over what the shape holds around each point away, as it is where breadth weakens
+ * the plane, so that the fill stays the fill. Shapes apart have means of their own. */
+void fl_field_centre(const FlWashField *field, const float *breadth, float *plane);
 
 /** The masks of the draws of wash w, and of its regions as far as the others leave them in sight.
  */
@@ -59,8 +58,8 @@ void fl_field_fill_masks(const FlWashField *field, const FlWashes *washes, int w
 /** Divides the points of a region among its limbs, by their distance. */
 void fl_field_divide(const FlWashField *field);
 
-/** Finds FlWashField.side: the place of each point along the light, from the middle of the shapes
- * around the point, as a share of their extent: a small shape is taken whole, a large one near the
+/** Finds FlWashField.side: the place of each point along the light, from the middle of the shape
+ * around the point, as a share of its extent: a small shape is taken whole, a large one near the
  * point. */
 void fl_field_find_side(const FlWashField *field);
 

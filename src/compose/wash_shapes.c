@@ -59,7 +59,7 @@ bool fl_field_alloc(FlWashField *field, GError **error)
     float *own = fl_alloc(n * FL_WASH_PLANES, sizeof *own, "a wash", error);
     for (int k = 0; k < FL_WASH_PLANES; k++)
         wash->plane[k] = own ? own + (size_t)k * n : NULL;
-    const size_t own_planes = 5 + FL_WASH_ROOMS;
+    const size_t own_planes = 6 + FL_WASH_ROOMS;
     float *planes =
         own ? fl_alloc(n * (own_planes + (size_t)field->n_parts), sizeof *planes, "a wash", error)
             : NULL;
@@ -68,7 +68,7 @@ bool fl_field_alloc(FlWashField *field, GError **error)
     field->mask = planes, field->side = planes + n, field->around = planes + 2 * n;
     field->turned = planes + 3 * n;
     for (size_t k = 0; k < FL_WASH_ROOMS; k++)
-        field->room[k] = planes + (5 + k) * n;
+        field->room[k] = planes + (6 + k) * n;
     for (int k = 0; k < field->n_parts; k++)
         field->part[k].weight = planes + (own_planes + (size_t)k) * n;
     return true;
@@ -85,15 +85,65 @@ void fl_field_blur(const FlWashField *field, float *plane, float sigma_px)
     transpose(turned, height, width, plane);
 }
 
-void fl_field_blur_inside(const FlWashField *field, float *plane, float sigma_px,
-                          const float *around)
+#define LEAK .05f // of what is spread from a point within a shape to one beside it
+
+/* Spreads a plane down and up its rows: as far as a point and the one before it lie in a shape, a
+ * share of what came to that one goes on. room: as large as the plane. */
+static void spread_rows(float *plane, const float *mask, int width, int height, float share,
+                        float *room)
+{
+    const int n = width * height;
+    memcpy(room, plane, (size_t)n * sizeof *room);
+    for (int i = width; i < n; i++)
+        plane[i] += share * MAX(MIN(mask[i], mask[i - width]), LEAK) * plane[i - width];
+    for (int i = n - width - 1; i >= 0; i--) {
+        const float come = share * MAX(MIN(mask[i], mask[i + width]), LEAK) * room[i + width];
+        plane[i] += come;
+        room[i] += come;
+    }
+}
+
+/* As the recursive filter of Gastal and Oliveira (2011), of deviation sigma_px of the page; not
+ * normalised. */
+static void spread(const FlWashField *field, float *plane, float sigma_px)
+{
+    const int width = field->wash->width, height = field->wash->height;
+    const float sigma = sigma_px * field->input->paper_px / (float)field->wash->step;
+    float *turned = field->turned, *mask = turned + fl_wash_points(field->wash),
+          *room = mask + fl_wash_points(field->wash);
+    transpose(field->mask, width, height, mask);
+    for (int k = 0; k < 3; k++) {
+        const float share = fl_fall(1.62f * (float)(1 << k) / sigma);
+        spread_rows(plane, field->mask, width, height, share, room);
+        transpose(plane, width, height, turned);
+        spread_rows(turned, mask, height, width, share, room);
+        transpose(turned, height, width, plane);
+    }
+}
+
+/* The weighted mean of a plane over what a shape holds around each point; around: the weights,
+ * spread alike. */
+static void mean_inside(const FlWashField *field, float *plane, const float *weight, float sigma_px,
+                        const float *around)
 {
     const size_t n = fl_wash_points(field->wash);
     for (size_t i = 0; i < n; i++)
-        plane[i] *= field->mask[i];
-    fl_field_blur(field, plane, sigma_px);
+        plane[i] *= weight[i];
+    spread(field, plane, sigma_px);
     for (size_t i = 0; i < n; i++)
-        plane[i] /= MAX(around[i], 1e-3f);
+        plane[i] /= MAX(around[i], 1e-12f);
+}
+
+void fl_field_centre(const FlWashField *field, const float *breadth, float *plane)
+{
+    const size_t n = fl_wash_points(field->wash);
+    float *mean = field->room[0], *weight = field->room[1], *around = field->around;
+    for (size_t i = 0; i < n; i++)
+        mean[i] = plane[i], around[i] = weight[i] = field->mask[i] * breadth[i];
+    spread(field, around, field->size);
+    mean_inside(field, mean, weight, field->size, around);
+    for (size_t i = 0; i < n; i++)
+        plane[i] -= mean[i];
 }
 
 /* Adds the coverage of a draw in the square of a step around each point to a plane, 0..1. */
@@ -177,9 +227,9 @@ void fl_field_find_side(const FlWashField *field)
         mean[i] = along[i], square[i] = along[i] * along[i];
     }
     memcpy(field->around, field->mask, n * sizeof *mean);
-    fl_field_blur(field, field->around, field->size);
-    fl_field_blur_inside(field, mean, field->size, field->around);
-    fl_field_blur_inside(field, square, field->size, field->around);
+    spread(field, field->around, field->size);
+    mean_inside(field, mean, field->mask, field->size, field->around);
+    mean_inside(field, square, field->mask, field->size, field->around);
     for (size_t i = 0; i < n; i++) {
         const float spread = sqrtf(MAX(square[i] - mean[i] * mean[i], 0));
         along[i] = fl_clamp((along[i] - mean[i]) / (1.9f * spread + 2), -1.4f, 1.4f);
@@ -232,8 +282,9 @@ void fl_field_find_breadth(const FlWashField *field, float *breadth)
     const size_t n = fl_wash_points(field->wash);
     memcpy(breadth, field->mask, n * sizeof *breadth);
     fl_field_blur(field, breadth, 16);
-    memcpy(field->room[0], breadth, n * sizeof *breadth);
-    fl_field_blur_inside(field, breadth, 16, field->room[0]);
+    memcpy(field->room[0], field->mask, n * sizeof *breadth);
+    spread(field, field->room[0], 16);
+    mean_inside(field, breadth, field->mask, 16, field->room[0]);
     for (size_t i = 0; i < n; i++)
         breadth[i] = fl_smooth((breadth[i] - .2f) / .35f);
 }

@@ -9,40 +9,28 @@
 
 /* ---- a wash ---------------------------------------------------------------------------------- */
 
-/* Takes the mean of what surrounds each point away, so that the fill stays the fill. */
-static void centre(const FlWashField *field, float *plane)
-{
-    float *mean = field->room[0];
-    memcpy(mean, plane, fl_wash_points(field->wash) * sizeof *mean);
-    fl_field_blur_inside(field, mean, field->size, field->around);
-    for (size_t i = 0; i < fl_wash_points(field->wash); i++)
-        plane[i] -= mean[i];
-}
-
 static void put_together(const FlWashField *field)
 {
     const FlWash *wash = field->wash;
     float *breadth = field->room[3], *pool = field->room[2];
     float *tone = wash->plane[FL_WASH_TONE], *hue = wash->plane[FL_WASH_HUE];
     const size_t n = fl_wash_points(wash);
-    for (size_t i = 0; i < n; i++) {
-        const float slow = tone[i];
-        tone[i] = .28f * fl_clamp(field->side[i] + .45f * slow, -1.3f, 1.3f) + .13f * slow;
-        hue[i] = 1.25f * hue[i] + .45f * field->side[i];
-    }
-    fl_field_find_breadth(field, breadth);
+    const float quiet = 1 - .45f * fl_smooth(field->size / 300 - 1); // a ground is laid with care
     memset(pool, 0, n * sizeof *pool);
     fl_field_find_pools(field, pool);
-    for (size_t i = 0; i < n; i++)
-        tone[i] += .38f * wash->style.pool * pool[i];
-    centre(field, tone);
-    centre(field, hue);
-    const float quiet = 1 - .45f * fl_smooth(field->size / 300 - 1); // a ground is laid with care
+    fl_field_find_breadth(field, breadth);
     for (size_t i = 0; i < n; i++) {
-        breadth[i] *= quiet;
-        tone[i] *= breadth[i];
-        hue[i] *= .3f + .7f * breadth[i];
-        const float lines = breadth[i] * wash->plane[FL_WASH_LINES][i];
+        const float slow = tone[i];
+        tone[i] = .24f * fl_clamp(field->side[i] + .45f * slow, -1.3f, 1.3f) + .12f * slow +
+                  .38f * wash->style.pool * pool[i];
+        hue[i] = 1.25f * hue[i] + .45f * field->side[i];
+    }
+    fl_field_centre(field, breadth, tone);
+    fl_field_centre(field, breadth, hue);
+    for (size_t i = 0; i < n; i++) {
+        const float lines = quiet * breadth[i] * wash->plane[FL_WASH_LINES][i];
+        tone[i] *= quiet * breadth[i];
+        hue[i] *= .3f + .7f * quiet * breadth[i];
         wash->plane[FL_WASH_LINES][i] = lines;
         wash->plane[FL_WASH_TIDES][i] *= lines;
         wash->plane[FL_WASH_BLOOMS][i] *= lines;
