@@ -47,7 +47,9 @@ typedef struct Tones {
     int8_t play[W * H];
 } Tones;
 
-static Tones *lay_frame(const FlDrawing *drawing, int frame, const FlWashStyle *style)
+/* The recording's amounts are off by `uneven` to both sides of the fill's, line by line. */
+static Tones *lay_frame_of(const FlDrawing *drawing, int frame, const FlWashStyle *style,
+                           int uneven)
 {
     const int n = fl_drawing_regions(drawing);
     FlRegionSettings settings;
@@ -87,8 +89,10 @@ static Tones *lay_frame(const FlDrawing *drawing, int frame, const FlWashStyle *
         const size_t pixels = fl_rect_pixels(area->box);
         g_autofree int16_t *amounts = g_new(int16_t, pixels);
         g_autofree int8_t *play = g_new0(int8_t, pixels);
-        for (size_t i = 0; i < pixels; i++)
-            amounts[i] = draws->draw[r].coverage[i] ? 1024 : -1;
+        for (size_t i = 0; i < pixels; i++) {
+            const int more = (int)i / area->box.width % 2 == 0 ? uneven : -uneven;
+            amounts[i] = (int16_t)(draws->draw[r].coverage[i] ? 1024 + more : -1);
+        }
         if (wash)
             fl_wash_lay(wash, 0, area, amounts, play);
         for (size_t i = 0; i < pixels; i++) {
@@ -102,6 +106,11 @@ static Tones *lay_frame(const FlDrawing *drawing, int frame, const FlWashStyle *
     }
     fl_region_settings_clear(&settings);
     return tones;
+}
+
+static Tones *lay_frame(const FlDrawing *drawing, int frame, const FlWashStyle *style)
+{
+    return lay_frame_of(drawing, frame, style, 0);
 }
 
 static const FlWashStyle plain = FL_WASH_DEFAULTS;
@@ -172,6 +181,27 @@ static void each_of_many_fills_stays(void)
         g_assert_cmpfloat(fabs(tone[k] / n[k]), <, .02);
         g_assert_cmpfloat(fabs(play[k] / n[k] / FL_PLAY_ONE), <, .3);
     }
+}
+
+/* A large and a small shape of one fill. */
+static void shapes_apart_stay_each(void)
+{
+    const char *const frames[] = {"<g fill='#5bb7d8'><circle id='a' cx='140' cy='120' r='110'/>"
+                                  "<circle id='b' cx='340' cy='240' r='40'/></g>",
+                                  NULL};
+    const FlWashStyle even = {.wash = 1, .pool = 1};
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
+    g_autofree Tones *tones = lay_frame(drawing, 0, &even);
+    double n[2] = {0}, tone[2] = {0};
+    for (int i = 0; i < W * H; i++) {
+        const bool small = i % W > 280 && i / W > 180;
+        if (tones->tone[i] > BARE)
+            n[small]++, tone[small] += (double)tones->tone[i];
+    }
+    g_test_message("mean of ln %.3f, %.3f", tone[0] / n[0], tone[1] / n[1]);
+    g_assert_cmpfloat(fabs(tone[0] / n[0]), <, .02);
+    g_assert_cmpfloat(fabs(tone[1] / n[1]), <, .02);
 }
 
 static double correlation(const float *a, const float *b, int n)
@@ -348,6 +378,33 @@ static void dots_and_lines_have_none(void)
     g_assert_cmpfloat(spread[2] - spread[0], <, .02f);
 }
 
+/* Where calm is, the step between lines goes; elsewhere it stays, and at the rim everywhere. */
+static void a_calm_wash_keeps_rims_and_some_marks(void)
+{
+    const char *const frames[] = {"<circle id='c' fill='#5bb7d8' cx='200' cy='150' r='140'/>",
+                                  NULL};
+    const FlWashStyle calm = {.wash = 1, .calm = 1};
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
+    g_autofree Tones *tones = lay_frame_of(drawing, 0, &calm, 200);
+    int middle = 0, lost = 0, found = 0, rim = 0;
+    for (int y = 11; y < H - 11; y++)
+        for (int x = 60; x < W - 60; x++) {
+            const double depth = 140 - hypot(x - 200, y - 150);
+            const float step = fabsf(tones->tone[y * W + x] - tones->tone[(y + 1) * W + x]);
+            if (depth > 3 && depth < 5) {
+                rim++;
+                g_assert_cmpfloat(step, >, .3f); // ln(1224 / 824) is .4
+            }
+            if (depth > 20)
+                middle++, lost += step<.1f, found += step> .3f;
+        }
+    g_test_message("of %d px %d are lost, %d found", middle, lost, found);
+    g_assert_cmpint(rim, >, 500);
+    g_assert_cmpint(lost, >, middle / 3);
+    g_assert_cmpint(found, >, middle / 20);
+}
+
 static void threads_and_parts_do_not_matter(void)
 {
     const char *const frames[] = {BLOB " id='b' transform='translate(180 150)'/>"
@@ -473,6 +530,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/wash/the-fill-stays-the-fill", the_fill_stays_the_fill);
     g_test_add_func("/wash/each-of-many-fills-stays", each_of_many_fills_stays);
+    g_test_add_func("/wash/shapes-apart-stay-each", shapes_apart_stay_each);
     g_test_add_func("/wash/it-rides-with-its-figure", it_rides_with_its_figure);
     g_test_add_func("/wash/a-limb-carries-its-own", a_limb_carries_its_own);
     g_test_add_func("/wash/still-figures-do-not-change", still_figures_do_not_change);
@@ -480,6 +538,8 @@ int main(int argc, char **argv)
                     touching_shapes_of_one_fill_are_one_wash);
     g_test_add_func("/wash/parts-that-move-apart-are-mixed", parts_that_move_apart_are_mixed);
     g_test_add_func("/wash/dots-and-lines-have-none", dots_and_lines_have_none);
+    g_test_add_func("/wash/a-calm-wash-keeps-rims-and-some-marks",
+                    a_calm_wash_keeps_rims_and_some_marks);
     g_test_add_func("/wash/threads-and-parts-do-not-matter", threads_and_parts_do_not_matter);
     g_test_add_func("/gaps/edges-are-off-by-a-hair", edges_are_off_by_a_hair);
     g_test_add_func("/pigments/they-mix-to-the-fill", pigments_mix_to_the_fill);

@@ -16,6 +16,7 @@ typedef enum FlWashPlane {
     FL_WASH_TIDES,  // strength of drying lines, 0..1
     FL_WASH_BLOOM,  // distance from the rim of a bloom, px of the page; below 0 it is inside
     FL_WASH_BLOOMS, // strength of blooms, 0..1
+    FL_WASH_CALM,   // share of the recording's unevenness that is lost, 0..1
     FL_WASH_PLANES,
 } FlWashPlane;
 

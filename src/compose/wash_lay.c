@@ -75,11 +75,13 @@ static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
             style->blooms * bloom_at(slow));
 }
 
-static int amount_of(const Brush *brush, int amount, float tone)
+/* calm: 1 for the amount that is the fill, 0 for that of the recording. */
+static int amount_of(const Brush *brush, int recorded, float calm, float tone)
 {
+    const float amount = (float)recorded + calm * (float)(FL_AMOUNT_ONE - recorded);
     const int i = (int)((fl_clamp(tone, TONE_LEAST, 1.37f) - TONE_LEAST) * TONE_ONE);
     const uint32_t laid = ((uint32_t)amount * brush->factor[i] + 64 * 255 / 2) / (64 * 255);
-    const float even = .9f * FL_AMOUNT_ONE + .1f * (float)amount;
+    const float even = .9f * FL_AMOUNT_ONE + .1f * amount;
     const float mixed = (float)laid + brush->white * (even - (float)laid);
     return MIN((int)mixed, FL_AMOUNTS - 1);
 }
@@ -112,7 +114,7 @@ static void lay_row(const Brush *brush, const FlArea *area, int y, int16_t *amou
                     wash->style.wash * slow[FL_WASH_TONE]; // lines look like dirt in white
                 const float shade = fl_smooth((3.5f * side + .15f) / 1.5f);
                 hue += brush->white * (shade - hue);
-                amounts[x] = (int16_t)amount_of(brush, amounts[x], tone);
+                amounts[x] = (int16_t)amount_of(brush, amounts[x], slow[FL_WASH_CALM], tone);
                 play[x] = (int8_t)(fl_clamp(hue, -1.95f, 1.95f) * FL_PLAY_ONE);
             }
             for (int k = 0; k < FL_WASH_PLANES; k++)

@@ -288,3 +288,12 @@ void fl_field_find_breadth(const FlWashField *field, float *breadth)
     for (size_t i = 0; i < n; i++)
         breadth[i] = fl_smooth((breadth[i] - .2f) / .35f);
 }
+
+void fl_field_find_middle(const FlWashField *field, float *middle)
+{
+    const size_t n = fl_wash_points(field->wash);
+    memcpy(middle, field->mask, n * sizeof *middle);
+    fl_field_blur(field, middle, 6);
+    for (size_t i = 0; i < n; i++)
+        middle[i] = fl_smooth((middle[i] - .9f) / .1f);
+}

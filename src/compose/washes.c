@@ -16,9 +16,11 @@ static void put_together(const FlWashField *field)
     float *tone = wash->plane[FL_WASH_TONE], *hue = wash->plane[FL_WASH_HUE];
     const size_t n = fl_wash_points(wash);
     const float quiet = 1 - .45f * fl_smooth(field->size / 300 - 1); // a ground is laid with care
+    const float calm = wash->style.calm * MIN(wash->style.wash, 1);
     memset(pool, 0, n * sizeof *pool);
     fl_field_find_pools(field, pool);
     fl_field_find_breadth(field, breadth);
+    fl_field_find_middle(field, wash->plane[FL_WASH_CALM]);
     for (size_t i = 0; i < n; i++) {
         const float slow = tone[i];
         tone[i] = .24f * fl_clamp(field->side[i] + .45f * slow, -1.3f, 1.3f) + .12f * slow +
@@ -34,6 +36,7 @@ static void put_together(const FlWashField *field)
         wash->plane[FL_WASH_LINES][i] = lines;
         wash->plane[FL_WASH_TIDES][i] *= lines;
         wash->plane[FL_WASH_BLOOMS][i] *= lines;
+        wash->plane[FL_WASH_CALM][i] *= calm * (1 - wash->plane[FL_WASH_CRISP][i]);
     }
 }
 
@@ -131,6 +134,7 @@ FlWashStyle fl_wash_style_of(const FlPaintedRegion *painted)
                          .tide = said(t->tide, NAN, style->tide),
                          .pool = said(t->pool, NAN, style->pool),
                          .blooms = said(t->blooms, NAN, style->blooms),
+                         .calm = said(t->calm, NAN, style->calm),
                          .hue = said(t->hue, 72 * t->pigments, style->hue)};
 }
 
@@ -144,6 +148,7 @@ static FlWashStyle style_of_region(const FlComposeInput *input, int first)
         mean.wash += share * style.wash, mean.passes += share * style.passes;
         mean.tide += share * style.tide, mean.pool += share * style.pool;
         mean.blooms += share * style.blooms, mean.hue += share * style.hue;
+        mean.calm += share * style.calm;
     }
     return mean;
 }

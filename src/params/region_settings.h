@@ -97,7 +97,7 @@ typedef struct FlRegionSettings {
     double granulation; // as of fl_granulate(); NAN: the style's
     double wash;        // of FlWashStyle, as those below; NAN: the style's
     double light;       // the side on which the shadow lies, degrees; 90: below
-    double hue, passes, tide, pool, blooms;
+    double hue, passes, tide, pool, blooms, calm;
     double load, pigments; // older words: wash / 5 and hue / 72; NAN: not said
     FlPalette palette;
     FlMarks marks;      // FL_MARKS_AUTO: the style's

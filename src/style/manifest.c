@@ -42,6 +42,7 @@ static const FlTableKey wash_keys[] = {
     {"tide", FL_KEY_OF(NUMBER, FlWashStyle, tide), 0, 2},
     {"pool", FL_KEY_OF(NUMBER, FlWashStyle, pool), 0, 2},
     {"blooms", FL_KEY_OF(NUMBER, FlWashStyle, blooms), 0, 2},
+    {"calm", FL_KEY_OF(NUMBER, FlWashStyle, calm), 0, 1},
     {"hue", FL_KEY_OF(NUMBER, FlWashStyle, hue), 0, 12},
 };
 
