@@ -468,8 +468,19 @@ else
         on_paper jpeg-ground -b open/Deep.JPG && ! same sheet/jpeg1.png sheet/auto1.png &&
         ! same sheet/jpeg-ground1.png sheet/auto1.png &&
         head -c 100 open/Deep.JPG >open/cut.jpg && ! on_paper cut --paper open/cut.jpg &&
-        grep -q 'open/cut.jpg: a damaged JPEG picture' err
+        grep -q 'open/cut.jpg: cannot be read as pictures' err
     result $? 'they may be JPEG pictures'
+    ffmpeg -v error -y -i sheet/auto1.png -lossless 1 -pix_fmt bgra open/a.webp && cp sheet/auto1.png open/a.png
+    for end in png webp; do
+        echo "<svg xmlns='http://www.w3.org/2000/svg' width='40' height='40'><image href='a.$end' width='40' height='40'/></svg>" >open/$end.svg
+        "$program" --flat open/$end.svg -q -o open/flat-$end.png
+    done >out 2>err
+    if grep -q 'reads no WebP' err; then
+        skip 'drawings may have WebP images' 'no libwebp'
+    else
+        [ ! -s err ] && cmp open/flat-png.png open/flat-webp.png >out
+        result $? 'drawings may have WebP images'
+    fi
 fi
 
 # Drafts are made at half the size, all regions or none; their files have that of the frames.

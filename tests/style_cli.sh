@@ -137,6 +137,8 @@ if command -v ffmpeg >/dev/null; then
     ffmpeg -v error -f lavfi -i sine=d=0.1 -c:a pcm_s16le sound.wav
     refuses 'sound is no paint' 1 'sound.wav: has no video stream' \
         import sound.wav -o sound
+    printf 'ffconcat version 1.0\nfile paint.mkv\n' >list.mkv
+    refuses 'a recording that names another file does not get it' 1 'list.mkv: *' import list.mkv -o listed
     head -c 2000 paint.mkv >cut.mkv
     refuses 'a broken video is named' 1 'cut.mkv: *' import cut.mkv -o broken
 else

@@ -6,12 +6,16 @@
 #include <fcntl.h>
 #include <glib.h>
 #include <linux/capability.h>
+#include <linux/filter.h>
 #include <linux/landlock.h>
+#include <linux/seccomp.h>
 #include <sched.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -21,6 +25,12 @@
 #include <seccomp.h>
 #endif
 
+struct FlConfinement {
+    int files;               // a ruleset of Landlock; -1: none
+    struct sock_fprog calls; // of seccomp; filter NULL: none
+    uint64_t space, written; // bytes of address space, and of a file; space 0: not limited
+};
+
 /* ---- files ----------------------------------------------------------------------------------- */
 
 #ifndef LANDLOCK_ACCESS_FS_REFER
@@ -29,6 +39,7 @@
 #ifndef LANDLOCK_ACCESS_FS_TRUNCATE
 #define LANDLOCK_ACCESS_FS_TRUNCATE (1ULL << 14)
 #endif
+#define READ LANDLOCK_ACCESS_FS_READ_FILE
 #define FIRST_VERSION ((LANDLOCK_ACCESS_FS_MAKE_SYM << 1) - 1)
 
 /** The folders of libraries, their modules and fonts. */
@@ -58,8 +69,8 @@ static uint64_t known_accesses(int most)
                              (version >= 3 ? LANDLOCK_ACCESS_FS_TRUNCATE : 0);
 }
 
-/** Allows reading a file, or what is below a folder. */
-static void allow(int rules, const char *path)
+/** Allows accesses to a file, or to what is below a folder. */
+static void allow(int rules, const char *path, uint64_t accesses)
 {
     struct stat what;
     const int file = path ? open(path, O_PATH | O_CLOEXEC) : -1;
@@ -67,8 +78,7 @@ static void allow(int rules, const char *path)
         return;
     const bool folder = fstat(file, &what) == 0 && S_ISDIR(what.st_mode);
     const struct landlock_path_beneath_attr rule = {
-        .allowed_access = LANDLOCK_ACCESS_FS_READ_FILE | (folder ? LANDLOCK_ACCESS_FS_READ_DIR : 0),
-        .parent_fd = file};
+        .allowed_access = accesses | (folder ? LANDLOCK_ACCESS_FS_READ_DIR : 0), .parent_fd = file};
     syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
     close(file);
 }
@@ -76,7 +86,7 @@ static void allow(int rules, const char *path)
 static void allow_in(int rules, const char *folder, const char *name)
 {
     g_autofree char *path = folder ? g_build_filename(folder, name, NULL) : NULL;
-    allow(rules, path);
+    allow(rules, path, READ);
 }
 
 /** Fonts of the user, and what lies beside libraries that are installed elsewhere. */
@@ -87,10 +97,10 @@ static void allow_of_user(int rules)
     allow_in(rules, g_get_user_data_dir(), "fonts");
     allow_in(rules, g_get_user_cache_dir(), "fontconfig");
     allow_in(rules, g_get_user_config_dir(), "fontconfig");
-    allow(rules, g_getenv("FONTCONFIG_PATH"));
-    allow(rules, g_getenv("FONTCONFIG_FILE"));
+    allow(rules, g_getenv("FONTCONFIG_PATH"), READ);
+    allow(rules, g_getenv("FONTCONFIG_FILE"), READ);
     for (const char *const *folder = g_get_system_data_dirs(); *folder; folder++)
-        allow(rules, *folder);
+        allow(rules, *folder, READ);
     Dl_info library;
     if (!dladdr((void *)g_get_home_dir, &library) || !library.dli_fname)
         return;
@@ -98,22 +108,32 @@ static void allow_of_user(int rules)
     allow_in(rules, folder, "..");
 }
 
-static bool give_up_files(const char *const *paths, int most)
+/** The program itself, and the libraries that lie beside it. */
+static void allow_program(int rules, const char *program)
+{
+    g_autofree char *folder = g_path_get_dirname(program);
+    allow(rules, program, READ | LANDLOCK_ACCESS_FS_EXECUTE);
+    allow_in(rules, folder, "../lib");
+}
+
+/** Returns: the ruleset; -1: there is no Landlock. */
+static int make_rules(const char *const *paths, const char *program, int most)
 {
     const struct landlock_ruleset_attr refused = {.handled_access_fs = known_accesses(most)};
     const int rules = refused.handled_access_fs
                           ? (int)syscall(SYS_landlock_create_ruleset, &refused, sizeof refused, 0)
                           : -1;
     if (rules < 0)
-        return false;
+        return -1;
     for (const char *const *path = system_paths; *path; path++)
-        allow(rules, *path);
-    allow_of_user(rules);
+        allow(rules, *path, READ | (program ? LANDLOCK_ACCESS_FS_EXECUTE : 0));
+    if (program)
+        allow_program(rules, program);
+    else
+        allow_of_user(rules);
     for (; paths && *paths; paths++)
-        allow(rules, *paths);
-    const bool good = syscall(SYS_landlock_restrict_self, rules, 0) == 0;
-    close(rules);
-    return good;
+        allow(rules, *paths, READ);
+    return rules;
 }
 
 /* ---- system calls ---------------------------------------------------------------------------- */
@@ -218,6 +238,9 @@ static const int allowed[] = {
     CALL(uname),
 };
 
+/* What it takes to become another program. */
+static const int starting[] = {CALL(execve), CALL(arch_prctl), CALL(dup2), CALL(dup3)};
+
 /** Allows a call if the bits `mask` of argument `nth` are `value`. */
 static bool allow_if(scmp_filter_ctx filter, int call, unsigned nth, uint64_t mask, uint64_t value)
 {
@@ -227,8 +250,8 @@ static bool allow_if(scmp_filter_ctx filter, int call, unsigned nth, uint64_t ma
 
 #define ALL_BITS 0xffffffffU
 
-/** Allows calls whose arguments decide what they are. */
-static bool allow_some(scmp_filter_ctx filter)
+/** Allows calls whose arguments decide what they are. own: the process is this one. */
+static bool allow_some(scmp_filter_ctx filter, bool own)
 {
     static const int commands[] = {F_DUPFD, F_DUPFD_CLOEXEC, F_GETFD, F_SETFD,
                                    F_GETFL, F_GETLK,         F_SETLK, F_SETLKW};
@@ -239,7 +262,7 @@ static bool allow_some(scmp_filter_ctx filter)
     bool good = allow_if(filter, CALL(open), 1, writes, O_RDONLY) &&
                 allow_if(filter, CALL(openat), 2, writes, O_RDONLY) &&
                 allow_if(filter, CALL(clone), 0, process, CLONE_THREAD | CLONE_VM) &&
-                allow_if(filter, CALL(tgkill), 0, ALL_BITS, (uint64_t)getpid()) &&
+                (!own || allow_if(filter, CALL(tgkill), 0, ALL_BITS, (uint64_t)getpid())) &&
                 allow_if(filter, CALL(ioctl), 1, ALL_BITS, TCGETS) &&
                 allow_if(filter, CALL(sendto), 4, ALL_BITS, 0) &&
                 allow_if(filter, CALL(send), 3, 0, 0) &&
@@ -254,32 +277,51 @@ static bool allow_some(scmp_filter_ctx filter)
     return good;
 }
 
+/** Copies a filter as the kernel wants it; leaves `out` empty if that fails. */
+static void export_filter(scmp_filter_ctx filter, struct sock_fprog *out)
+{
+    const int file = memfd_create("fluidy-calls", MFD_CLOEXEC);
+    const bool good = file >= 0 && seccomp_export_bpf(filter, file) == 0;
+    const off_t bytes = good ? lseek(file, 0, SEEK_END) : 0;
+    out->filter = bytes > 0 ? malloc((size_t)bytes) : NULL;
+    out->len = (unsigned short)((size_t)bytes / sizeof *out->filter);
+    if (out->filter && pread(file, out->filter, (size_t)bytes, 0) != bytes)
+        g_clear_pointer(&out->filter, free);
+    if (file >= 0)
+        close(file);
+}
+
 /* A refused call is one that the kernel does not have: libraries then use another one. */
-static bool give_up_calls(void)
+static void make_filter(bool program, struct sock_fprog *out)
 {
     scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ERRNO(ENOSYS));
     bool good = filter != NULL;
     for (size_t i = 0; good && i < G_N_ELEMENTS(allowed); i++)
         good = seccomp_rule_add(filter, SCMP_ACT_ALLOW, allowed[i], 0) == 0;
-    good = good && allow_some(filter);
+    for (size_t i = 0; good && program && i < G_N_ELEMENTS(starting); i++)
+        good = seccomp_rule_add(filter, SCMP_ACT_ALLOW, starting[i], 0) == 0;
+    good = good && allow_some(filter, !program);
 #if SCMP_VER_MAJOR > 2 || (SCMP_VER_MAJOR == 2 && SCMP_VER_MINOR >= 5)
     // older kernels would slow down every load after a store
     good = good && seccomp_attr_set(filter, SCMP_FLTATR_CTL_SSB, 1) == 0 &&
            seccomp_attr_set(filter, SCMP_FLTATR_CTL_OPTIMIZE, 2) == 0; // a search, not a list
 #endif
-    good = good && seccomp_load(filter) == 0;
+    if (good)
+        export_filter(filter, out);
     if (filter)
         seccomp_release(filter);
-    return good;
 }
 #else
-static bool give_up_calls(void)
+static void make_filter(bool program, struct sock_fprog *out)
 {
-    return false;
+    (void)program, (void)out;
 }
 #endif
 
 /* ---- memory and privileges ------------------------------------------------------------------- */
+
+#define PROGRAM_SPACE                                                                              \
+    ((uint64_t)4 << 30) // bytes for libraries, and for stacks and heaps of threads
 
 /** Bytes of address space in use, which RLIMIT_AS counts. */
 static uint64_t space_bytes(void)
@@ -303,12 +345,6 @@ static bool give_up_beyond(int resource, uint64_t most)
     return setrlimit((__rlimit_resource_t)resource, &limit) == 0;
 }
 
-static bool give_up_memory(int64_t mib)
-{
-    const uint64_t now = space_bytes(), more = (uint64_t)mib << 20;
-    return now > 0 && give_up_beyond(RLIMIT_AS, now + more) && give_up_beyond(RLIMIT_FSIZE, more);
-}
-
 /** Keeps no privilege but that of root to read any user's files. */
 static void give_up_privileges(void)
 {
@@ -322,14 +358,44 @@ static void give_up_privileges(void)
     (void)syscall(SYS_capset, &header, keeps);
 }
 
-unsigned fl_sandbox_enter(const char *const *paths, int64_t mib, int most)
+/* ---- both sides of a fork -------------------------------------------------------------------- */
+
+FlConfinement *fl_confinement_new(const char *const *paths, const char *program, int64_t mib,
+                                  int most)
 {
-    unsigned given_up = give_up_memory(mib) ? FL_SANDBOX_MEMORY : 0;
+    const uint64_t more = (uint64_t)mib << 20;
+    const uint64_t now = program ? PROGRAM_SPACE : space_bytes();
+    FlConfinement *confinement = g_new0(FlConfinement, 1);
+    confinement->files = make_rules(paths, program, most);
+    confinement->space = now > 0 ? now + more : 0;
+    confinement->written = more;
+    make_filter(program != NULL, &confinement->calls);
+    return confinement;
+}
+
+void fl_confinement_free(FlConfinement *confinement)
+{
+    if (!confinement)
+        return;
+    if (confinement->files >= 0)
+        close(confinement->files);
+    free(confinement->calls.filter);
+    g_free(confinement);
+}
+
+unsigned fl_confinement_enter(const FlConfinement *c)
+{
+    unsigned given_up = 0;
+    if (c->space > 0 && give_up_beyond(RLIMIT_AS, c->space) &&
+        give_up_beyond(RLIMIT_FSIZE, c->written))
+        given_up |= FL_SANDBOX_MEMORY;
     give_up_privileges();
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
         return given_up;
-    given_up |= give_up_files(paths, most) ? FL_SANDBOX_FILES : 0;
-    given_up |= give_up_calls() ? FL_SANDBOX_CALLS : 0;
+    if (c->files >= 0 && syscall(SYS_landlock_restrict_self, c->files, 0) == 0)
+        given_up |= FL_SANDBOX_FILES;
+    if (c->calls.filter && prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &c->calls) == 0)
+        given_up |= FL_SANDBOX_CALLS;
     return given_up;
 }
 

@@ -2,11 +2,13 @@
 
 #include "base/error.h"
 #include "base/limits.h"
+#include "base/sandbox.h"
 
 #include <errno.h>
 #include <glib/gstdio.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -30,9 +32,11 @@ struct FlChild {
 };
 
 /* In the child, before the program. */
-static void set_up(void *data)
+static void set_up(void *confinement)
 {
     setpgid(0, 0);
+    if (confinement)
+        fl_confinement_enter(confinement);
 #ifdef __linux__
     prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
@@ -52,16 +56,27 @@ static int error_code(const FlChild *child)
     return child->stream == FL_CHILD_INPUT ? FL_ERROR_OUTPUT : FL_ERROR_INPUT;
 }
 
-static bool spawn(FlChild *child, const char *const *arguments, int theirs, int file,
-                  GError **error)
+/** Confines a program to the file that it reads; NULL if `reads` is. */
+static FlConfinement *confine(const char *program, const char *reads)
 {
+    g_autofree char *path = reads ? g_find_program_in_path(program) : NULL;
+    g_autofree char *real = path ? realpath(path, NULL) : NULL;
+    const char *const paths[] = {reads, path, NULL};
+    return real ? fl_confinement_new(paths, real, fl_limit(FL_LIMIT_MEMORY), FL_LANDLOCK_ANY)
+                : NULL;
+}
+
+static bool spawn(FlChild *child, const char *const *arguments, const char *reads, int theirs,
+                  int file, GError **error)
+{
+    g_autoptr(FlConfinement) confinement = confine(arguments[0], reads);
     const bool fed = child->stream == FL_CHILD_INPUT;
     const int target = 3;
     const GSpawnFlags flags = G_SPAWN_SEARCH_PATH | G_SPAWN_DO_NOT_REAP_CHILD |
                               (fed ? G_SPAWN_STDOUT_TO_DEV_NULL : G_SPAWN_DEFAULT);
     g_autoptr(GError) trouble = NULL;
     if (g_spawn_async_with_pipes_and_fds(
-            NULL, arguments, NULL, flags, set_up, NULL, fed ? theirs : -1, fed ? -1 : theirs,
+            NULL, arguments, NULL, flags, set_up, confinement, fed ? theirs : -1, fed ? -1 : theirs,
             child->errors, &file, &target, file >= 0, &child->pid, NULL, NULL, NULL, &trouble))
         return true;
     child->pid = 0;
@@ -69,8 +84,8 @@ static bool spawn(FlChild *child, const char *const *arguments, int theirs, int 
                    trouble->message);
 }
 
-FlChild *fl_child_start(const char *const *arguments, FlChildStream stream, int file,
-                        const FlPatience *patience, GError **error)
+static FlChild *start(const char *const *arguments, FlChildStream stream, const char *reads,
+                      int file, const FlPatience *patience, GError **error)
 {
     g_autoptr(FlChild) child = g_new(FlChild, 1);
     *child = (FlChild){.program = g_strdup(arguments[0]), .stream = stream, .ours = -1};
@@ -84,9 +99,20 @@ FlChild *fl_child_start(const char *const *arguments, FlChildStream stream, int 
         return NULL;
     }
     child->ours = ends[0];
-    const bool started = spawn(child, arguments, ends[1], file, error);
+    const bool started = spawn(child, arguments, reads, ends[1], file, error);
     close(ends[1]);
     return started ? g_steal_pointer(&child) : NULL;
+}
+
+FlChild *fl_child_start(const char *const *arguments, FlChildStream stream, int file,
+                        const FlPatience *patience, GError **error)
+{
+    return start(arguments, stream, NULL, file, patience, error);
+}
+
+FlChild *fl_child_start_reader(const char *const *arguments, const char *file, GError **error)
+{
+    return start(arguments, FL_CHILD_OUTPUT, file, -1, NULL, error);
 }
 
 char *fl_child_stderr_tail(const FlChild *child)

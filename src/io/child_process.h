@@ -33,6 +33,13 @@ typedef struct FlPatience {
 FlChild *fl_child_start(const char *const *arguments, FlChildStream stream, int file,
                         const FlPatience *patience, GError **error);
 
+/**
+ * As fl_child_start() with FL_CHILD_OUTPUT, for a program that reads a stranger's file. It is
+ * confined as far as the system lets it be: of files it can read this one and those of the system,
+ * and it can write none; it reaches no network and no other process.
+ */
+FlChild *fl_child_start_reader(const char *const *arguments, const char *file, GError **error);
+
 /*
  * Each of these returns false with FL_ERROR_INTERRUPTED if patience.stopped() returns true, or with
  * the stream's error if the child dies, or hangs and is killed; the message quotes the last line of

@@ -33,7 +33,7 @@ FlFfmpeg *fl_ffmpeg_open(const char *path, int first, int last, int step, GError
     g_autoptr(FlFfmpeg) ffmpeg = g_new(FlFfmpeg, 1);
     g_autoptr(GError) below = NULL;
     *ffmpeg = (FlFfmpeg){.path = g_strdup(path)};
-    ffmpeg->child = fl_child_start(args, FL_CHILD_OUTPUT, -1, NULL, &below);
+    ffmpeg->child = fl_child_start_reader(args, path, &below);
     if (!ffmpeg->child) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
                     "%s: cannot be read without the ffmpeg program: %s", path, below->message);
@@ -121,6 +121,18 @@ FlPicture *fl_ffmpeg_read(FlFfmpeg *ffmpeg, GError **error)
     return NULL;
 }
 
+FlPicture *fl_ffmpeg_picture(const char *path, GError **error)
+{
+    g_autoptr(FlFfmpeg) ffmpeg = fl_ffmpeg_open(path, 1, 1, 1, error);
+    g_autoptr(GError) below = NULL;
+    FlPicture *picture = ffmpeg ? fl_ffmpeg_read(ffmpeg, &below) : NULL;
+    if (below)
+        g_propagate_error(error, g_steal_pointer(&below));
+    else if (!picture && ffmpeg)
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: contains no picture", path);
+    return picture;
+}
+
 double fl_ffmpeg_rate(const char *path)
 {
     g_autofree char *url = file_url(path);
@@ -137,7 +149,7 @@ double fl_ffmpeg_rate(const char *path)
                                 "default=noprint_wrappers=1:nokey=1",
                                 url,
                                 NULL};
-    g_autoptr(FlChild) child = fl_child_start(args, FL_CHILD_OUTPUT, -1, NULL, NULL);
+    g_autoptr(FlChild) child = fl_child_start_reader(args, path, NULL);
     char out[64] = "";
     size_t got;
     int above = 0, below = 0;

@@ -9,8 +9,8 @@ typedef struct FlFfmpeg FlFfmpeg;
 
 /**
  * Begins to read frames first, first + step ... last of a file's first video, from 1; last 0: to
- * the end. No shell is involved, and the file cannot open others. Returns: NULL with FL_ERROR_INPUT
- * set.
+ * the end. No shell is involved, and the program is confined to the file. Returns: NULL with
+ * FL_ERROR_INPUT set.
  */
 FlFfmpeg *fl_ffmpeg_open(const char *path, int first, int last, int step, GError **error);
 
@@ -22,6 +22,9 @@ FlPicture *fl_ffmpeg_read(FlFfmpeg *ffmpeg, GError **error);
 
 /** Ends the child. NULL is fine. */
 void fl_ffmpeg_close(FlFfmpeg *ffmpeg);
+
+/** The first picture of a file, which is a still. Returns: NULL with FL_ERROR_INPUT set. */
+FlPicture *fl_ffmpeg_picture(const char *path, GError **error);
 
 /** Frames per second of a file's first video; 0 if ffprobe does not know. */
 double fl_ffmpeg_rate(const char *path);

@@ -211,14 +211,7 @@ static FlPicture *read_still(const char *path, GError **error)
     g_autofree char *lower = g_ascii_strdown(path, -1);
     if (g_str_has_suffix(lower, ".png"))
         return fl_picture_read_png(path, error);
-    g_autoptr(FlFfmpeg) ffmpeg = fl_ffmpeg_open(path, 1, 1, 1, error);
-    g_autoptr(GError) below = NULL;
-    FlPicture *picture = ffmpeg ? fl_ffmpeg_read(ffmpeg, &below) : NULL;
-    if (below)
-        g_propagate_error(error, g_steal_pointer(&below));
-    else if (!picture && ffmpeg)
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: contains no picture", path);
-    return picture;
+    return fl_ffmpeg_picture(path, error);
 }
 
 static bool read_series(Reader *reader, GError **error)

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/limits.h"
 #include "svg/reference.h"
+#include "svg/webp.h"
 #include <gdk-pixbuf/gdk-pixbuf.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,6 +38,8 @@ static void keep_size(GdkPixbufLoader *loader, int width, int height, void *size
 /* The size in the image's header; 0 x 0 for what is no image. */
 static void size_of_data(const guint8 *data, gsize bytes, int size[2])
 {
+    if (fl_webp_size(data, bytes, size))
+        return;
     g_autoptr(GdkPixbufLoader) loader = gdk_pixbuf_loader_new();
     bool good = true;
     g_signal_connect(loader, "size-prepared", G_CALLBACK(keep_size), size);
@@ -61,6 +64,17 @@ static const char *kind_of(const guint8 *data, gsize bytes)
     return NULL;
 }
 
+/** Has a node refer to a PNG instead of a WebP image, whose size has been checked. */
+static void replace_webp(const Check *check, xmlNode *node, xmlAttr *a, const char *href,
+                         const guint8 *data, gsize bytes)
+{
+    g_autofree char *png = fl_webp_as_png(data, bytes);
+    if (png)
+        xmlSetNsProp(node, a->ns, a->name, (const xmlChar *)png);
+    else
+        warn(check, node, href, "is damaged, or this build reads no WebP, and is left out");
+}
+
 /** An image in the drawing itself: a wrong label, which librsvg would believe, is put right. */
 static bool check_data(const Check *check, xmlNode *node, xmlAttr *a, const char *href,
                        GError **error)
@@ -73,13 +87,36 @@ static bool check_data(const Check *check, xmlNode *node, xmlAttr *a, const char
     g_autofree guint8 *data = g_base64_decode(comma + 1, &bytes);
     const char *kind = kind_of(data, bytes);
     size_of_data(data, bytes, size);
-    if (size[0] == 0 && !g_str_has_prefix(href, "data:image/svg"))
+    if (!check_pixels(check, size[0], size[1], error))
+        return false;
+    if (g_strcmp0(kind, "image/webp") == 0)
+        replace_webp(check, node, a, href, data, bytes);
+    else if (size[0] == 0 && !g_str_has_prefix(href, "data:image/svg"))
         warn(check, node, href, "cannot be read and is left out");
     else if (kind && !g_str_has_prefix(href + 5, kind)) {
         g_autofree char *mended = g_strdup_printf("data:%s;base64%s", kind, comma);
         xmlSetNsProp(node, a->ns, a->name, (const xmlChar *)mended);
     }
-    return check_pixels(check, size[0], size[1], error);
+    return true;
+}
+
+/** An image in a file beside the drawing. */
+static bool check_file(const Check *check, xmlNode *node, xmlAttr *a, const char *href,
+                       const char *file, GError **error)
+{
+    int size[2] = {0};
+    g_autofree char *data = NULL;
+    gsize bytes = 0;
+    if (gdk_pixbuf_get_file_info(file, &size[0], &size[1]))
+        return check_pixels(check, size[0], size[1], error);
+    if (!g_file_get_contents(file, &data, &bytes, NULL) ||
+        g_strcmp0(kind_of((const guint8 *)data, bytes), "image/webp") != 0)
+        return true;
+    (void)fl_webp_size((const guint8 *)data, bytes, size);
+    if (!check_pixels(check, size[0], size[1], error))
+        return false;
+    replace_webp(check, node, a, href, (const guint8 *)data, bytes);
+    return true;
 }
 
 /* librsvg would block on a pipe or a device: the reference is removed. */
@@ -89,7 +126,6 @@ static bool check_reference(const Check *check, xmlNode *node, xmlAttr *a, const
     static const char *const images[] = {"image", "feImage", NULL};
     bool is_there = false;
     g_autofree char *file = fl_reference_file(check->path, href, &is_there);
-    int width = 0, height = 0;
     if (file)
         g_ptr_array_add(check->files, g_strdup(file));
     if (is_there && !fl_file_check(file, FL_ERROR_INPUT, NULL)) {
@@ -103,8 +139,8 @@ static bool check_reference(const Check *check, xmlNode *node, xmlAttr *a, const
         warn(check, node, href, "does not exist and is left out");
     else if (!fl_reference_is_inside(check->path, file))
         warn(check, node, href, "is outside the drawing's folder and is left out");
-    else if (gdk_pixbuf_get_file_info(file, &width, &height))
-        return check_pixels(check, width, height, error);
+    else
+        return check_file(check, node, a, href, file, error);
     return true;
 }
 

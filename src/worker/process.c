@@ -88,9 +88,11 @@ static unsigned obey(FlReader reader, bool *required)
     (void)fl_schedule_set_threads(1);
     prctl(PR_SET_DUMPABLE, 0); // no core dumps
     *required = orders.required;
-    return orders.confined ? fl_sandbox_enter((const char *const *)paths, fl_limit(FL_LIMIT_MEMORY),
-                                              FL_LANDLOCK_ANY)
-                           : FL_SANDBOX_ALL;
+    if (!orders.confined)
+        return FL_SANDBOX_ALL;
+    g_autoptr(FlConfinement) confinement = fl_confinement_new(
+        (const char *const *)paths, NULL, fl_limit(FL_LIMIT_MEMORY), FL_LANDLOCK_ANY);
+    return fl_confinement_enter(confinement);
 }
 
 /** Ends the worker by SIGPROF once it has used as much of the processor as a request may. */
