@@ -31,6 +31,11 @@ verify now --layers 'l/{region}_%d.png'
 [ $? = 1 ] && wrong 12 && grep -q 'l/red-aa3311_6.png: is missing' err && ! grep -q 'now/' err
 result $? 'layers count as well, and frames are the same with them'
 
+paint now -y --provenance made.json && sum=$(sha256sum <now/w_0003.png) && grep -q "now/w_0003.png\":\"${sum%% *}\"" made.json &&
+    python3 -c 'import json; made = json.load(open("made.json")); assert len(made["sha256"]) == 6 and "w_0001.svg" in made["facts"]' &&
+    verify now && whole 6
+result $? 'all that they were made from is listed on request'
+
 for at in 40 300 -9; do
     cp now/w_0004.png kept.png
     change now/w_0004.png $((at < 0 ? $(stat -c %s now/w_0004.png) + at : at))

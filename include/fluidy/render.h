@@ -194,10 +194,12 @@ typedef struct FlRenderOptions {
     /** A folder in which paint is kept and from which it is taken while all that decides it is the
      *  same; "auto": paint below the user's cache folder; NULL, "off": no cache. */
     const char *cache;
-    int cache_size;     /**< MiB, beyond which the cache drops what was used least; 0: 8192 */
-    const char *stats;  /**< a file for JSON lines about every frame, region and level; NULL: no
-                           statistics */
-    const char *report; /**< a folder for the HTML report, index.html; NULL: no report */
+    int cache_size;         /**< MiB, beyond which the cache drops what was used least; 0: 8192 */
+    const char *stats;      /**< a file for JSON lines about every frame, region and level; NULL: no
+                               statistics */
+    const char *provenance; /**< a file for JSON of all that the files of this render were made
+                               from, and their SHA-256; NULL: none */
+    const char *report;     /**< a folder for the HTML report, index.html; NULL: no report */
     const char
         *dump; /**< a folder for guides, fields and T_temp as pictures and data; NULL: no dump */
     const char *ebsynth; /**< a folder for pairs of guides and ebsynth's command lines; with `merge`

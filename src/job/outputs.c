@@ -1,7 +1,10 @@
 #include "job/outputs.h"
 
+#include "base/json.h"
+#include "io/atomic_file.h"
 #include "io/pattern.h"
 #include "job/paint_files.h"
+#include "job/plan_facts.h"
 #include "params/options.h"
 
 bool fl_frame_has_picture(const FlPlan *plan)
@@ -72,7 +75,9 @@ bool fl_guard_inputs(const FlPlan *plan, GError **error)
     if (!may_write(plan, report, error) ||
         !may_write(plan, g_strdup(plan->format->film ? plan->output : NULL), error) ||
         !may_write(plan, g_strdup(plan->movie), error) ||
-        !may_write(plan, g_strdup(o->stats), error) || !may_fill_folders(plan, o->dump, error) ||
+        !may_write(plan, g_strdup(o->stats), error) ||
+        !may_write(plan, g_strdup(o->provenance), error) ||
+        !may_fill_folders(plan, o->dump, error) ||
         !may_fill_folders(plan, o->merge ? NULL : o->ebsynth, error))
         return false;
     for (int f = 0; f < fl_drawing_frames(plan->drawing); f++)
@@ -96,4 +101,59 @@ bool fl_guard_pictures(const FlDrawing *drawing, const FlRenderOptions *options,
             return false;
     }
     return true;
+}
+
+/* ---- provenance ------------------------------------------------------------------------------ */
+
+/** The SHA-256 of a file, to be freed; NULL: it cannot be read. */
+static char *sum_of(const char *path)
+{
+    g_autoptr(GMappedFile) file = g_mapped_file_new(path, FALSE, NULL);
+    return file ? g_compute_checksum_for_data(G_CHECKSUM_SHA256,
+                                              (const guchar *)g_mapped_file_get_contents(file),
+                                              g_mapped_file_get_length(file))
+                : NULL;
+}
+
+/** A file that was made anew or kept; paint that is no file of this run is left out. */
+static void put_file(GString *json, const char *path)
+{
+    g_autofree char *sum = sum_of(path);
+    if (sum)
+        fl_json_text(json, path, sum);
+}
+
+static bool put_files(GString *json, const FlPlan *plan, GError **error)
+{
+    for (int f = plan->first; f < plan->end; f++) {
+        g_autoptr(GPtrArray) files = fl_frame_files(plan, f, error);
+        for (guint k = 0; files && k < files->len; k++)
+            put_file(json, files->pdata[k]);
+        if (!files)
+            return false;
+    }
+    if (plan->format->film || plan->movie)
+        put_file(json, plan->format->film ? plan->output : plan->movie);
+    return true;
+}
+
+bool fl_write_provenance(const FlPlan *plan, GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    g_auto(FlAtomicFile) file = {0};
+    g_autoptr(GString) json = g_string_new("{\"facts\":{");
+    if (!o->provenance)
+        return true;
+    g_autoptr(FlFacts) facts = fl_plan_facts(plan);
+    for (guint k = 0; k < facts->list->len; k++) {
+        const FlFact *fact = &g_array_index(facts->list, FlFact, k);
+        fl_json_text(json, fact->name, fact->value);
+    }
+    g_string_append(json, "},\"sha256\":{");
+    if (!put_files(json, plan, error) ||
+        !fl_atomic_open(&file, o->provenance, o->overwrite != FL_OVERWRITE_REFUSE, error))
+        return false;
+    g_string_append(json, "}}\n");
+    fputs(json->str, file.stream);
+    return fl_atomic_commit(&file, error);
 }

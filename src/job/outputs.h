@@ -31,4 +31,10 @@ bool fl_guard_inputs(const FlPlan *plan, GError **error);
 bool fl_guard_pictures(const FlDrawing *drawing, const FlRenderOptions *options,
                        const char *pattern, GError **error);
 
+/**
+ * Writes options.provenance, unless it is NULL: the facts that decide the frames, in words, and the
+ * SHA-256 of each file that was written. Returns: false with FL_ERROR_OUTPUT set.
+ */
+bool fl_write_provenance(const FlPlan *plan, GError **error);
+
 #endif

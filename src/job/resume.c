@@ -148,12 +148,14 @@ static void note_resume(const FlResume *resume, const FlPlan *plan)
 bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GError **error)
 {
     const bool one_file = plan->format->film && !plan->parts_only;
-    const char *movie = one_file ? plan->output : plan->movie, *stats = plan->options.stats;
+    const char *movie = one_file ? plan->output : plan->movie;
+    const char *const beside[] = {plan->options.stats, plan->options.provenance};
     if (may_overwrite(plan))
         return true;
-    if (stats && plan->options.overwrite == FL_OVERWRITE_REFUSE &&
-        !fl_check_not_exists(stats, error))
-        return false;
+    for (size_t k = 0; k < G_N_ELEMENTS(beside); k++)
+        if (beside[k] && plan->options.overwrite == FL_OVERWRITE_REFUSE &&
+            !fl_check_not_exists(beside[k], error))
+            return false;
     if (movie && !fl_check_not_exists(movie, error))
         return false;
     g_autofree char *state = hidden_file(plan, false, "state");
@@ -302,7 +304,7 @@ void fl_resume_clear(FlResume *resume)
 /* True if a render writes more than frames and a film. */
 static bool writes_more(const FlRenderOptions *o)
 {
-    return o->layers || o->paint || o->stats || o->report || o->dump || o->ebsynth;
+    return o->layers || o->paint || o->stats || o->provenance || o->report || o->dump || o->ebsynth;
 }
 
 /* The store of the plan, if its render can be known as finished. */

@@ -211,7 +211,8 @@ static bool run(Pipeline *pipeline, GError **error)
         if (!render_frame(pipeline, f, error))
             return false;
     if (!finish_writing(pipeline, error) || !fl_frame_writer_finish(&pipeline->writer, error) ||
-        !fl_stats_finish(&pipeline->stats, error) || !fl_report_finish(pipeline->report, error))
+        !fl_stats_finish(&pipeline->stats, error) || !fl_report_finish(pipeline->report, error) ||
+        !fl_write_provenance(pipeline->frames.plan, error))
         return false;
     fl_resume_finish(&pipeline->resume, pipeline->frames.plan);
     fl_summary_of_render(pipeline->frames.plan, &pipeline->stats);
@@ -304,7 +305,8 @@ bool fl_render_frames(const FlRenderOptions *options, FlTakeFrame take, void *ta
     without_files.output = NULL, without_files.format = "null";
     without_files.overwrite = FL_OVERWRITE_YES, without_files.resume = false;
     without_files.cache = NULL; // frames are given once, so a failed render cannot be retried
-    without_files.layers = without_files.report = without_files.stats = without_files.dump = NULL;
+    without_files.layers = without_files.report = without_files.stats = NULL;
+    without_files.dump = without_files.provenance = NULL;
     if (!options->merge)
         without_files.paint = without_files.ebsynth = NULL;
     return render(&without_files, (FlFrameTaker){take, taker}, error);
