@@ -75,6 +75,10 @@ static void selectors_choose_elements(void)
                                          "g:not(.x) > .k",
                                          "g { &amp; > path",
                                          "g { .k",
+                                         "#\\61",
+                                         "#\\000061",
+                                         ".\\6b .l",
+                                         "path/* and */.k",
                                          "rect, path"};
     static const char *const left[] = {"rect",
                                        "#b",
@@ -140,6 +144,8 @@ static void the_strongest_declaration_wins(void)
         {"/* path{fill:red} */path{fill:#111111}", "#111111"},
         {".x}path{fill:#111111}", ""},
         {"path{fill:#111111}}rect{}", "#111111"},
+        {"path{fill:#111111;all:unset}", "inherit"},
+        {"path{all:unset;fill:#111111}", "#111111"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(sheets); i++) {
         g_autofree char *content = g_strdup_printf("<style>%s</style>" SHAPE, sheets[i][0]);
@@ -201,6 +207,8 @@ static void values_become_those_of_svg_1(void)
         {"transform='scale(4)' stroke-width='2' vector-effect='non-scaling-stroke'", "stroke-width",
          "0.5"},
         {"d='M0 0h9v9z' style='clip-path:circle(2px)'", "clip-path", "url(#fl-clip-0)"},
+        {"style='filter:blur(1px) invert(1)'", "filter", "blur(1px) url(#fl-filter-0)"},
+        {"style='mask:url(#m) luminance'", "mask", "url(#m)"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(values); i++) {
         g_autofree char *content = g_strdup_printf("<path id='a' %s/>", values[i][0]);
@@ -208,6 +216,9 @@ static void values_become_those_of_svg_1(void)
     }
     assert_value("<g style='--c:#123456'><path id='a' style='fill:var(--c)'/></g>", "fill",
                  "#123456");
+    assert_value("<style>@property --c{initial-value:#123456;inherits:false}</style>"
+                 "<g style='--c:red'><path id='a' style='fill:var(--c)'/></g>",
+                 "fill", "#123456");
     assert_value("<g style='font-size:20px'><path id='a' style='stroke-width:calc(.5em)'/></g>",
                  "stroke-width", "10");
 }
@@ -226,6 +237,9 @@ static void colours_are_those_of_a_browser(void)
         {"rgb(10 20 30 / none)", "rgba(10, 20, 30, 0)"},
         {"hsl(120deg 100% 25%)", "rgb(0, 128, 0)"},
         {"color-mix(in oklab, white, black)", "rgb(99, 99, 99)"},
+        {"color-mix(in oklch, red, white 0%)", "rgb(255, 0, 0)"},
+        {"color-mix(in hsl, red, lime)", "rgb(255, 255, 0)"},
+        {"color-mix(in hsl longer hue, red, lime)", "rgb(0, 0, 255)"},
         {"light-dark(red, blue)", "rgb(255, 0, 0)"},
         {"CanvasText", "rgb(0, 0, 0)"},
         {"#12345678", "#12345678"},
@@ -268,14 +282,43 @@ static void media_ask_about_a_screen(void)
     }
 }
 
+/* The same element, shown with different variables; rules match where it is written. */
+static void what_use_shows_has_the_variables_of_use(void)
+{
+#define SHOWN(use)                                                                                 \
+    "<style>.in .p{fill:var(--c, #111111)}</style><g class='in'><path id='p' class='p'/></g>"      \
+    "<g id='a' style='--c:#222222'>" use "</g>"
+    static const char *const uses[][2] = {
+        {"<use href='#p'/>", "#222222"},
+        {"<use href='#p' style='--c:#333333'/>", "#333333"},
+        {"<use href='#p' style='--c:initial'/>", "#111111"},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(uses); i++) {
+        g_autoptr(Scratch) folder = scratch_make();
+        g_autofree char *content = g_strdup_printf(SHOWN("%s"), uses[i][0]);
+        g_autofree char *path = scratch_svg(folder, "a.svg", content);
+        g_autoptr(FlSvg) svg = open_svg(path, NULL);
+        const GArray *leaf = fl_svg_leaves(svg)->leaf;
+        g_assert_cmpuint(leaf->len, ==, 2);
+        g_autoptr(GHashTable) ids = fl_document_ids(fl_svg_document(svg));
+        const char *id = g_array_index(leaf, FlLeaf, 1).id;
+        g_autofree char *fill = fl_property(g_hash_table_lookup(ids, id), "fill");
+        g_assert_cmpstr(fill, ==, uses[i][1]);
+    }
+    g_autoptr(FlWarnings) warnings = fl_warnings_new();
+    g_free(computed("<g id='a' fill='var(--c, red)'><use href='#a'/></g>", "a", "fill", warnings));
+    g_assert_cmpint(fl_warnings_count(warnings), ==, 1); // it shows itself
+}
+
 static void each_kind_that_is_left_out_is_told_once(void)
 {
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
     g_free(computed(
         "<style>path{backdrop-filter:blur(1px);fill:nonsense;-webkit-foo:1;cursor:help}"
-        ":has(a){fill:red}</style><path style='backdrop-filter:none'/><path id='a' d='M0 0h1'/>",
+        ":has(a){fill:red}</style><path style='backdrop-filter:none'/><path id='a' d='M0 0h1' "
+        "stroke='rgb(from red r g b)' style='mix-blend-mode:plus-lighter;word-spacing:1px'/>",
         "a", "fill", warnings));
-    g_assert_cmpint(fl_warnings_count(warnings), ==, 3);
+    g_assert_cmpint(fl_warnings_count(warnings), ==, 6);
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, ":has(a)"));
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 1)->text, "backdrop-filter"));
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 2)->text, "nonsense"));
@@ -311,6 +354,7 @@ int main(int argc, char **argv)
     TEST(values_become_those_of_svg_1);
     TEST(colours_are_those_of_a_browser);
     TEST(media_ask_about_a_screen);
+    TEST(what_use_shows_has_the_variables_of_use);
     TEST(each_kind_that_is_left_out_is_told_once);
     TEST(hostile_sheets_come_to_an_end);
     return g_test_run();

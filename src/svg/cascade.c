@@ -1,10 +1,12 @@
 #include "svg/cascade.h"
 
+#include "base/limits.h"
 #include "svg/css_animation.h"
 #include "svg/css_colour.h"
 #include "svg/css_effects.h"
 #include "svg/css_properties.h"
 #include "svg/css_sheet.h"
+#include "svg/normalise.h"
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +14,9 @@
 typedef struct Style {
     const struct Style *around;
     GHashTable *variables; // custom properties that are set here, name -> value; may be NULL
+    GHashTable *own;       // names of those that children do not inherit; may be NULL
     FlCssUnits units;
+    const xmlNode *shows; // by <use>; else NULL
 } Style;
 
 typedef struct Cascade {
@@ -26,6 +30,9 @@ typedef struct Cascade {
     GHashTable *said; // texts of the warnings that were given
     double seconds;   // the moment that is shown; NAN: animations are left out
     FlFilmLength *length;
+    GHashTable *ids;   // id -> xmlNode, the first of that id
+    GHashTable *shown; // xmlNode -> a copy as it was written, of what <use> shows with variables
+    int n_copied;      // elements
     int n_clips;
 } Cascade;
 
@@ -66,10 +73,27 @@ static void warn_of_animation(Cascade *c, const char *value)
                             "the CSS animation is not played: the frame's own values are drawn");
 }
 
+static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d);
+
+static void declare_every_property(Cascade *c, GArray *values, const FlCssDeclaration *all)
+{
+    const FlCssProperty *property;
+    for (int i = 0; (property = fl_css_property_at(i)); i++)
+        if (property->kind != FL_CSS_ANIMATION && strcmp(property->name, "direction") != 0 &&
+            strcmp(property->name, "unicode-bidi") != 0)
+            declare(
+                c, values,
+                &(FlCssDeclaration){g_intern_string(property->name), all->value, all->important});
+}
+
 /** Takes a declaration over one of lower priority. */
 static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d)
 {
     const char *name = without_vendor(d->name);
+    if (strcmp(name, "all") == 0) {
+        declare_every_property(c, values, d);
+        return;
+    }
     const bool custom = g_str_has_prefix(name, "--");
     const FlCssProperty *property = custom ? NULL : fl_css_property(name);
     if (!custom && !property) {
@@ -138,10 +162,11 @@ static int compare_important(const void *a, const void *b)
     return p->layer != q->layer ? q->layer - p->layer : compare_in_layer(p, q);
 }
 
-/** The rules that match an element, FlCssRule *. */
+/** The rules that match an element, FlCssRule *; those of a copy match where it was copied from. */
 static GArray *match(Cascade *c, const xmlNode *node)
 {
     GArray *matched = g_array_new(FALSE, FALSE, sizeof(const FlCssRule *));
+    node = node->_private ? node->_private : node;
     if (fl_css_sheet_rules(c->sheet)->len == 0)
         return matched;
     g_autoptr(xmlChar) id = fl_attribute(node, "id");
@@ -176,8 +201,11 @@ static GArray *declared_values(Cascade *c, const xmlNode *node, GArray *own)
 
 static const char *find_variable(const void *data, const char *name)
 {
+    const GHashTable *own = ((const Style *)data)->own;
+    const bool inherits = !own || !g_hash_table_contains((GHashTable *)own, name);
     for (const Style *s = data; s; s = s->around) {
-        const char *value = s->variables ? g_hash_table_lookup(s->variables, name) : NULL;
+        const bool sets = s->variables && (inherits || s == data || !s->around);
+        const char *value = sets ? g_hash_table_lookup(s->variables, name) : NULL;
         if (value)
             return *value ? value : NULL;
     }
@@ -391,6 +419,93 @@ static void animate(Cascade *c, const xmlNode *node, GArray *values, const Style
                                 underlying_value, take_value, &animated, c->length);
 }
 
+/* ---- what <use> shows ------------------------------------------------------------------------ */
+
+/* Variables that a <use> inherits count for what it shows. librsvg does not know them, so that each
+ * <use> of an element with var() gets a copy of its own. */
+
+static bool has_variable(const GArray *declarations)
+{
+    for (guint i = 0; i < declarations->len; i++)
+        if (strstr(g_array_index(declarations, FlCssDeclaration, i).value, "var("))
+            return true;
+    return false;
+}
+
+/** Returns: true if an element, or one in it, has a value with var(). */
+static bool needs_variables(Cascade *c, const xmlNode *node)
+{
+    g_autoptr(GArray) matched = match(c, node);
+    bool found = false;
+    for (guint i = 0; i < matched->len && !found; i++)
+        found = has_variable(g_array_index(matched, const FlCssRule *, i)->declarations);
+    for (const xmlAttr *a = node->properties; a && !found; a = a->next)
+        found = a->children && a->children->content &&
+                strstr((const char *)a->children->content, "var(");
+    for (const xmlNode *child = node->children; child && !found; child = child->next)
+        found = child->type == XML_ELEMENT_NODE && needs_variables(c, child);
+    return found;
+}
+
+static const xmlNode *target_of_use(const Cascade *c, const xmlNode *use)
+{
+    g_autoptr(xmlChar) plain = fl_attribute(use, "href");
+    g_autofree char *foreign = plain ? NULL : fl_foreign_attribute(use, "href");
+    const char *href = plain ? (const char *)plain : foreign;
+    return href && *href == '#' ? g_hash_table_lookup(c->ids, href + 1) : NULL;
+}
+
+/** A copy whose elements point to those where rules are matched. */
+static xmlNode *copy_linked(const xmlNode *node)
+{
+    xmlNode *copy = xmlDocCopyNode((xmlNode *)node, node->doc, 1);
+    const xmlNode *from = node;
+    for (xmlNode *to = copy; to;) {
+        to->_private = from->_private ? from->_private : (xmlNode *)from;
+        const bool down = to->children && to->type == XML_ELEMENT_NODE;
+        while (!down && to != copy && !to->next)
+            to = to->parent, from = from->parent;
+        if (!down && to == copy)
+            break;
+        from = down ? from->children : from->next;
+        to = down ? to->children : to->next;
+    }
+    return copy;
+}
+
+static void free_copy(void *node)
+{
+    xmlFreeNode(node);
+}
+
+/** Copies what is shown with variables, before it is rewritten. */
+static void keep_shown(Cascade *c, const xmlNode *node)
+{
+    const xmlNode *target = fl_is(node, "use") ? target_of_use(c, node) : NULL;
+    if (target && !g_hash_table_contains(c->shown, target) && needs_variables(c, target))
+        g_hash_table_insert(c->shown, (gpointer)target, copy_linked(target));
+    for (const xmlNode *child = node->children; child; child = child->next)
+        if (child->type == XML_ELEMENT_NODE)
+            keep_shown(c, child);
+}
+
+/** Makes a <use> a group with a copy of what it shows, if that has variables. */
+static void show_with_variables(Cascade *c, xmlNode *use, Style *style)
+{
+    const xmlNode *target = fl_is(use, "use") ? target_of_use(c, use) : NULL;
+    const xmlNode *kept = target ? g_hash_table_lookup(c->shown, target) : NULL;
+    for (const Style *s = style; s && kept; s = s->around)
+        if (s->shows == target)
+            kept = NULL; // a cycle, of which fl_document_normalise() tells
+    for (const xmlNode *at = use; at && kept; at = at->parent)
+        if (at == target)
+            kept = NULL;
+    if (!kept || c->n_copied > fl_limit(FL_LIMIT_ELEMENTS))
+        return;
+    c->n_copied += fl_use_show(use, copy_linked(kept));
+    style->shows = target;
+}
+
 /* ---- writing --------------------------------------------------------------------------------- */
 
 static void set_attribute(xmlNode *node, const char *name, const char *value)
@@ -419,8 +534,10 @@ static void compute_attributes(Cascade *c, xmlNode *node, const Style *style)
             (property->kind == FL_CSS_PAINT && !strchr(text, '(')))
             continue;
         g_autofree char *trimmed = g_strstrip(g_strdup(text));
-        if (!fl_css_is_valid(property, trimmed))
+        if (!fl_css_is_valid(property, trimmed)) {
+            warn(c, name, trimmed, "is not a value of that property");
             continue; // librsvg decides
+        }
         g_autofree char *value = compute(c, name, property, trimmed, style);
         if (strcmp(value, trimmed) != 0)
             set_attribute(node, name, value);
@@ -477,7 +594,7 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     g_autoptr(GArray) values = declared_values(c, node, own);
     g_auto(FlCssEffects) effects = {0};
     g_autoptr(GPtrArray) owned = g_ptr_array_new_with_free_func(g_free);
-    Style style = {.around = around, .units = around->units};
+    Style style = {.around = around, .own = around->own, .units = around->units};
     set_variables(&style, values);
     if (fl_is(node, "svg"))
         enter_viewport(&style, node);
@@ -500,6 +617,7 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     if (values->len > 0 || own->len > 0)
         set_attribute(node, "style", text->str);
     g_string_free(text, TRUE);
+    show_with_variables(c, node, &style);
     for (xmlNode *child = node->children; child && !fl_is(node, "foreignObject");
          child = child->next)
         if (child->type == XML_ELEMENT_NODE)
@@ -557,7 +675,19 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
     g_autoptr(FlCssSheet) sheet = fl_css_sheet_take(doc, path, number, size, files, warnings);
     g_autoptr(GHashTable) rules = index_rules(fl_css_sheet_rules(sheet));
     g_autoptr(GHashTable) said = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
-    Cascade c = {doc, path, number, warnings, sheet, rules, {0}, said, seconds, length, 0};
+    g_autoptr(GHashTable) ids = fl_document_ids(doc);
+    g_autoptr(GHashTable) shown = g_hash_table_new_full(NULL, NULL, NULL, free_copy);
+    Cascade c = {.doc = doc,
+                 .path = path,
+                 .number = number,
+                 .warnings = warnings,
+                 .sheet = sheet,
+                 .rules = rules,
+                 .said = said,
+                 .seconds = seconds,
+                 .length = length,
+                 .ids = ids,
+                 .shown = shown};
     const GArray *initial = fl_css_sheet_initial(sheet);
     for (guint i = 0; i < initial->len; i++) {
         const FlCssDeclaration *d = &g_array_index(initial, FlCssDeclaration, i);
@@ -565,6 +695,8 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
             page.variables = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free);
         g_hash_table_insert(page.variables, (gpointer)d->name, g_strdup(d->value));
     }
+    page.own = fl_css_sheet_own(sheet);
+    keep_shown(&c, root);
     visit(&c, root, &page);
     fl_css_keep_strokes(root, &page.units);
     if (c.work.steps > FL_SELECTOR_STEPS)

@@ -105,6 +105,12 @@ static void from_polar(const double lch[3], double lab[3])
     lab[0] = lch[0], lab[1] = lch[1] * c, lab[2] = lch[1] * s;
 }
 
+static void to_polar(const double lab[3], double lch[3])
+{
+    const double chroma = hypot(lab[1], lab[2]), hue = atan2(lab[2], lab[1]) * 180 / G_PI;
+    lch[0] = lab[0], lch[1] = chroma, lch[2] = hue;
+}
+
 /** Hue in degrees, saturation and lightness 0 … 1. */
 static void from_hsl(const double hsl[3], double rgb[3])
 {
@@ -113,6 +119,18 @@ static void from_hsl(const double hsl[3], double rgb[3])
         const double k = fmod(fmod((i == 0 ? 0 : i == 1 ? 8 : 4) + hsl[0] / 30, 12) + 12, 12);
         rgb[i] = hsl[2] - a * MAX(-1, MIN(MIN(k - 3, 9 - k), 1));
     }
+}
+
+/** To lightness, saturation and hue, in the order of other polar spaces. */
+static void to_hsl(const double rgb[3], double lsh[3])
+{
+    const double high = MAX(rgb[0], MAX(rgb[1], rgb[2])), low = MIN(rgb[0], MIN(rgb[1], rgb[2]));
+    const double d = high - low, l = (high + low) / 2;
+    const double hue = d <= 0           ? 0
+                       : high == rgb[0] ? (rgb[1] - rgb[2]) / d
+                       : high == rgb[1] ? (rgb[2] - rgb[0]) / d + 2
+                                        : (rgb[0] - rgb[1]) / d + 4;
+    lsh[0] = l, lsh[1] = d > 0 ? d / (1 - fabs(2 * l - 1)) : 0, lsh[2] = 60 * hue;
 }
 
 static void from_hwb(const double hwb[3], double rgb[3])
@@ -262,7 +280,58 @@ static bool read_share(const char *text, Rgba *colour, double *share, int depth)
     return read_colour(part[leads ? 1 : 0], colour, depth + 1);
 }
 
-/** Mixes in sRGB, linear sRGB or Oklab, which stands for all other spaces. */
+/** What color-mix() mixes in; Oklab stands for Lab and XYZ, and its polar form for LCH. */
+typedef struct MixSpace {
+    bool oklab, polar, linear;
+} MixSpace;
+
+/** The components of a colour; a polar one has its hue last. */
+static void enter_space(MixSpace space, const double rgb[3], double v[3])
+{
+    double lab[3];
+    for (int i = 0; i < 3; i++)
+        v[i] = space.linear ? decode(rgb[i]) : rgb[i];
+    if (space.oklab)
+        to_oklab(rgb, space.polar ? lab : v);
+    else if (space.polar)
+        to_hsl(rgb, v);
+    if (space.oklab && space.polar)
+        to_polar(lab, v);
+}
+
+static void leave_space(MixSpace space, const double v[3], double rgb[3])
+{
+    double lab[3] = {v[0], v[1], v[2]};
+    if (space.oklab && space.polar)
+        from_polar(v, lab);
+    for (int i = 0; i < 3; i++)
+        rgb[i] = space.linear ? encode(v[i]) : v[i];
+    if (space.oklab)
+        from_oklab(lab, rgb);
+    else if (space.polar)
+        from_hsl((const double[]){v[2], v[1], v[0]}, rgb);
+}
+
+/** The hue to mix with the first one, on the arc that is named. */
+static double hue_on_arc(const char *method, double first, double second)
+{
+    const double way = fmod(fmod(second - first, 360) + 360, 360); // increasing
+    const bool increasing =
+        strstr(method, "increasing") ||
+        (!strstr(method, "decreasing") && (way <= 180) == !strstr(method, "longer"));
+    return first + (increasing ? way : way - 360);
+}
+
+/** A mix of colours without chroma has the hue of the other one. */
+static void fix_hues(const char *method, double p[3], double q[3])
+{
+    const double grey = 1e-4;
+    if (p[1] < grey)
+        p[2] = q[2];
+    else
+        q[2] = q[1] < grey ? p[2] : hue_on_arc(method, p[2], q[2]);
+}
+
 static bool from_mix(const char *arguments, Rgba *colour, int depth)
 {
     g_auto(GStrv) part = fl_css_split(arguments, ',');
@@ -274,22 +343,24 @@ static bool from_mix(const char *arguments, Rgba *colour, int depth)
     a = a < 0 ? (b < 0 ? 0.5 : 1 - b) : a, b = b < 0 ? 1 - a : b;
     if (!(a + b > 0))
         return false;
-    const bool plain = g_str_has_prefix(part[0], "in srgb") ||
-                       g_str_has_prefix(part[0], "in hsl") || g_str_has_prefix(part[0], "in hwb");
-    const bool linear = g_str_has_prefix(part[0], "in srgb-linear");
+    const char *name = part[0] + 3;
+    const bool hsl = g_str_has_prefix(name, "hsl") || g_str_has_prefix(name, "hwb");
+    const bool lch = g_str_has_prefix(name, "lch") || g_str_has_prefix(name, "oklch");
+    const MixSpace space = {.oklab = !hsl && !g_str_has_prefix(name, "srgb"),
+                            .polar = hsl || lch,
+                            .linear = g_str_has_prefix(name, "srgb-linear")};
     const double total = a + b, wa = a / total * one.alpha, wb = b / total * two.alpha;
     const double alpha = wa + wb;
-    for (int i = 0; i < 3; i++)
-        p[i] = linear ? decode(one.c[i]) : one.c[i], q[i] = linear ? decode(two.c[i]) : two.c[i];
-    if (!plain)
-        to_oklab(one.c, p), to_oklab(two.c, q);
-    for (int i = 0; i < 3; i++)
-        p[i] = alpha > 0 ? (p[i] * wa + q[i] * wb) / alpha : 0;
-    if (!plain)
-        from_oklab(p, colour->c);
-    else
-        for (int i = 0; i < 3; i++)
-            colour->c[i] = linear ? encode(p[i]) : p[i];
+    enter_space(space, one.c, p), enter_space(space, two.c, q);
+    if (space.polar)
+        fix_hues(name, p, q);
+    for (int i = 0; i < 3; i++) {
+        const bool hue = space.polar && i == 2; // not multiplied by opacity
+        p[i] = hue         ? (p[i] * a + q[i] * b) / total
+               : alpha > 0 ? (p[i] * wa + q[i] * wb) / alpha
+                           : 0;
+    }
+    leave_space(space, p, colour->c);
     colour->alpha = alpha * MIN(total, 1);
     return true;
 }

@@ -55,6 +55,41 @@ static void set_matrix(xmlNode *node, const FlAffine *m)
     g_string_free(text, TRUE);
 }
 
+/* ---- boxes ----------------------------------------------------------------------------------- */
+
+/** The value of a property, or else that of the elements around; NULL: none is set. To be freed. */
+static char *inherited(const xmlNode *node, const char *name)
+{
+    char *value = NULL;
+    for (; node && node->type == XML_ELEMENT_NODE && !value; node = node->parent)
+        value = fl_property(node, name);
+    return value;
+}
+
+/** The width of a stroke that is drawn; 0 without one. */
+static double stroke_width(const xmlNode *node, const FlCssUnits *units)
+{
+    g_autofree char *paint = inherited(node, "stroke"), *text = inherited(node, "stroke-width");
+    double width = 1;
+    if (!paint || strcmp(paint, "none") == 0)
+        return 0;
+    if (text && !fl_css_number(text, units, hypot(units->width, units->height) / G_SQRT2, &width))
+        return 0;
+    return width;
+}
+
+/** The box of a shape's fill, or with its stroke; a group's has no stroke. */
+static bool own_box(const xmlNode *node, const char *kind, const FlCssUnits *units, FlCssBox *box)
+{
+    static const char *const outer[] = {"stroke-box", "border-box", "margin-box", NULL};
+    if (!fl_css_fill_box(node, units, box))
+        return false;
+    const bool stroked = g_strv_contains(outer, kind) && !fl_is_container(node);
+    const double more = stroked ? stroke_width(node, units) / 2 : 0;
+    *box = (FlCssBox){box->x - more, box->y - more, box->width + 2 * more, box->height + 2 * more};
+    return true;
+}
+
 /* ---- transforms ------------------------------------------------------------------------------ */
 
 /** The box that percentages and the origin refer to [CSS Transforms 1 §5]. */
@@ -65,7 +100,7 @@ static FlCssBox reference_box(const FlCssEffects *effects, const xmlNode *node,
     g_autofree char *kind = value_or_attribute(effects, node, "transform-box");
     FlCssBox box = {0, 0, units->width, units->height};
     if (kind && g_strv_contains(own, kind))
-        fl_css_fill_box(node, units, &box);
+        own_box(node, kind, units, &box);
     return box;
 }
 
@@ -101,17 +136,21 @@ static bool multiply_property(FlAffine *all, const char *function, const char *v
 
 /** Multiplies by the place on offset-path [Motion Path 1]; false if it cannot be read. */
 static bool multiply_offset(FlAffine *all, const FlCssEffects *effects, const FlCssUnits *units,
-                            FlPoint origin)
+                            FlCssBox box, FlPoint origin)
 {
     const char *path = value_of(effects, "offset-path");
     const char *distance = fl_css_effects_get(effects, "offset-distance");
     const char *rotate = fl_css_effects_get(effects, "offset-rotate");
+    const char *anchor_text = fl_css_effects_get(effects, "offset-anchor");
     const FlCssBox page = {0, 0, units->width, units->height};
     double direction = 0, angle = 0;
     bool evenodd;
-    FlPoint at;
+    FlPoint at, anchor = origin;
     if (!path)
         return true;
+    if (anchor_text && strcmp(anchor_text, "auto") != 0 &&
+        !fl_css_position(anchor_text, units, box, &anchor))
+        return false;
     g_autofree char *d = fl_css_basic_shape(path, units, page, &evenodd);
     if (!d || !fl_css_place_on_path(d, distance ? distance : "0", units, &at, &direction))
         return false;
@@ -128,8 +167,10 @@ static bool multiply_offset(FlAffine *all, const FlCssEffects *effects, const Fl
     }
     const FlAffine move = {1, 0, 0, 1, at.x - origin.x, at.y - origin.y};
     const FlAffine turn = fl_affine_rotation(angle + (follows ? direction : 0));
+    const FlAffine hold = {1, 0, 0, 1, origin.x - anchor.x, origin.y - anchor.y};
     multiply(all, &move);
     multiply(all, &turn);
+    multiply(all, &hold);
     return true;
 }
 
@@ -167,7 +208,7 @@ static const char *apply_transform(const FlCssEffects *effects, xmlNode *node,
         return "rotate";
     if (!multiply_property(&all, "scale", scale, &in_box))
         return "scale";
-    if (!multiply_offset(&all, effects, units, origin))
+    if (!multiply_offset(&all, effects, units, box, origin))
         return "offset-path";
     multiply(&all, &own);
     multiply(&all, &back);
@@ -200,7 +241,7 @@ static const char *apply_clip(const FlCssEffects *effects, xmlNode *node, const 
                               int *n_clips)
 {
     static const char *const boxes[] = {"fill-box",    "stroke-box", "border-box", "padding-box",
-                                        "content-box", "margin-box", NULL};
+                                        "content-box", "margin-box", "view-box",   NULL};
     const char *value = fl_css_effects_get(effects, "clip-path");
     if (!value)
         return NULL;
@@ -212,22 +253,112 @@ static const char *apply_clip(const FlCssEffects *effects, xmlNode *node, const 
     }
     g_auto(GStrv) part = fl_css_split(value, ' ');
     FlCssBox box = {0, 0, units->width, units->height};
-    bool page = false, evenodd = false;
-    const char *shape = NULL;
+    bool evenodd = false;
+    const char *shape = NULL, *kind = "border-box";
     for (int i = 0; part[i]; i++) {
-        page |= strcmp(part[i], "view-box") == 0;
         if (strchr(part[i], '('))
             shape = part[i];
-        else if (!g_strv_contains(boxes, part[i]) && strcmp(part[i], "view-box") != 0)
+        else if (g_strv_contains(boxes, part[i]))
+            kind = part[i];
+        else
             return "clip-path";
     }
-    if (!page && !fl_css_fill_box(node, units, &box))
+    if (strcmp(kind, "view-box") != 0 && !own_box(node, kind, units, &box))
         return "clip-path";
     g_autofree char *d = fl_css_basic_shape(shape ? shape : "inset(0)", units, box, &evenodd);
     if (!d)
         return "clip-path";
     add_clip(node, d, evenodd, n_clips);
     return NULL;
+}
+
+/** Declares the first url() of `mask`. Returns: false if more words would change the picture. */
+static const char *apply_mask(const FlCssEffects *effects, xmlNode *node)
+{
+    static const char *const plain[] = {"luminance", "match-source", "no-clip", "add", NULL};
+    const char *value = fl_css_effects_get(effects, "mask");
+    g_auto(GStrv) part = fl_css_split(value ? value : "", ' ');
+    g_autofree char *declaration = g_strconcat("mask:", part[0] ? part[0] : "none", NULL);
+    if (!value)
+        return NULL;
+    fl_declare(node, declaration);
+    for (int i = 1; part[0] && part[i]; i++)
+        if (!g_strv_contains(plain, part[i]))
+            return "mask";
+    return part[0] && strchr(part[0], '(') && !g_str_has_prefix(part[0], "url(") ? "mask" : NULL;
+}
+
+/** The matrix of a filter function that changes colours [Filter Effects 1 §9]; false if it is
+ * another function. */
+static bool colour_matrix(const char *name, double v, double m[3][4])
+{
+    static const double luma[3] = {.2126, .7152, .0722};
+    static const double sepia[3][3] = {{.393, .769, .189}, {.349, .686, .168}, {.272, .534, .131}};
+    static const double turn[2][3][3] = {
+        {{.787, -.715, -.072}, {-.213, .285, -.072}, {-.213, -.715, .928}},
+        {{-.213, -.715, .928}, {.143, .140, -.283}, {-.787, .715, .072}}};
+    const bool inverts = strcmp(name, "invert") == 0, contrast = strcmp(name, "contrast") == 0;
+    const bool turns = strcmp(name, "hue-rotate") == 0, brown = strcmp(name, "sepia") == 0;
+    const double share = MIN(v, 1);
+    double s, c;
+    fl_sincos_degrees(v, &s, &c);
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            const double same = i == k;
+            m[i][k] = inverts || contrast || strcmp(name, "brightness") == 0
+                          ? same * (inverts ? 1 - 2 * share : v)
+                      : strcmp(name, "grayscale") == 0 ? luma[k] + (same - luma[k]) * (1 - share)
+                      : strcmp(name, "saturate") == 0  ? luma[k] + (same - luma[k]) * v
+                      : brown                          ? same + (sepia[i][k] - same) * share
+                      : turns ? same - turn[0][i][k] + c * turn[0][i][k] + s * turn[1][i][k]
+                              : NAN;
+            m[i][3] = inverts ? share : contrast ? .5 - .5 * v : 0;
+        }
+    return !isnan(m[0][0]);
+}
+
+/** Adds a <filter> that does in sRGB, as CSS wants it, what a function does in librsvg in linear
+ * light. Returns: its url(), to be freed; NULL for another function. */
+static char *add_filter(xmlNode *node, const char *function, const FlCssUnits *units, int *n)
+{
+    g_autofree char *name = NULL, *arguments = NULL;
+    double v = 1, m[3][4];
+    if (!fl_css_call(function, &name, &arguments) ||
+        (*arguments && !fl_css_number(arguments, units, 1, &v)) || !colour_matrix(name, v, m))
+        return NULL;
+    GString *values = g_string_new(NULL);
+    for (int i = 0; i < 12; i++) {
+        g_autofree char *number = fl_css_number_text(m[i / 4][i % 4]);
+        g_string_append_printf(values, i % 4 == 3 ? "0 %s " : "%s ", number);
+    }
+    g_string_append(values, "0 0 0 1 0");
+    g_autofree char *id = g_strdup_printf("fl-filter-%d", (*n)++);
+    xmlNode *filter = add_child(xmlDocGetRootElement(node->doc), "filter");
+    xmlNode *matrix = add_child(filter, "feColorMatrix");
+    set_attribute(filter, "id", id);
+    set_attribute(filter, "filterUnits", "userSpaceOnUse");
+    set_attribute(filter, "x", "-100%"), set_attribute(filter, "y", "-100%");
+    set_attribute(filter, "width", "300%"), set_attribute(filter, "height", "300%");
+    set_attribute(matrix, "color-interpolation-filters", "sRGB");
+    set_attribute(matrix, "values", values->str);
+    g_string_free(values, TRUE);
+    return g_strdup_printf("url(#%s)", id);
+}
+
+static void apply_filter(const FlCssEffects *effects, xmlNode *node, const FlCssUnits *units,
+                         int *n)
+{
+    const char *value = fl_css_effects_get(effects, "filter");
+    g_auto(GStrv) part = fl_css_split(value ? value : "", ' ');
+    for (int i = 0; part[i]; i++) {
+        char *made = add_filter(node, part[i], units, n);
+        if (made)
+            g_free(part[i]), part[i] = made;
+    }
+    g_autofree char *list = g_strjoinv(" ", part);
+    g_autofree char *declaration = g_strconcat("filter:", *list ? list : "none", NULL);
+    if (value)
+        fl_declare(node, declaration);
 }
 
 /** The background of the whole page becomes a rectangle below everything. */
@@ -301,10 +432,7 @@ static void scale_stroke(xmlNode *node, const char *const *names, double factor,
                          const FlCssUnits *units)
 {
     for (int i = 0; names[i]; i++) {
-        g_autofree char *value = NULL;
-        for (const xmlNode *at = node; at && at->type == XML_ELEMENT_NODE && !value;
-             at = at->parent)
-            value = fl_property(at, names[i]);
+        g_autofree char *value = inherited(node, names[i]);
         if (!value && strcmp(names[i], "stroke-width") == 0)
             value = g_strdup("1");
         g_autofree char *text =
@@ -339,9 +467,11 @@ const char *fl_css_effects_apply(const FlCssEffects *effects, xmlNode *node,
     const char *clip = apply_clip(effects, node, units, n_clips);
     const char *transform = apply_transform(effects, node, units);
     const char *background = apply_background(effects, node, units);
+    const char *mask = apply_mask(effects, node);
+    apply_filter(effects, node, units, n_clips);
     apply_path_length(node, units);
     xmlUnsetProp(node, (const xmlChar *)"transform-origin");
-    return problem ? problem : clip ? clip : transform ? transform : background;
+    return problem ? problem : clip ? clip : transform ? transform : mask ? mask : background;
 }
 
 /* ---- strokes that do not scale --------------------------------------------------------------- */

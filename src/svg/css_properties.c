@@ -16,7 +16,6 @@ static const char *const ignored[] = {
     "-",
     "accent-",
     "align-",
-    "all",
     "animation-",
     "appearance",
     "aspect-",
@@ -128,6 +127,11 @@ const FlCssProperty *fl_css_property(const char *name)
     return found;
 }
 
+const FlCssProperty *fl_css_property_at(int i)
+{
+    return i < (int)G_N_ELEMENTS(known) ? &known[i] : NULL;
+}
+
 static bool is_number(const char *value)
 {
     const FlCssUnits any = {1, 1, 1, 1, 1, 1};
@@ -159,6 +163,8 @@ bool fl_css_is_valid(const FlCssProperty *property, const char *value)
     switch (property->kind) {
     case FL_CSS_PAINT:
         return colour != NULL;
+    case FL_CSS_BLEND:
+        return !g_str_has_prefix(value, "plus-");
     case FL_CSS_NUMBER:
     case FL_CSS_GEOMETRY:
         return is_number(value);

@@ -9,6 +9,7 @@ typedef enum FlCssKind {
     FL_CSS_LENGTH,    // a length or percentage
     FL_CSS_LENGTHS,   // a list of such
     FL_CSS_NUMBER,    // a number or percentage
+    FL_CSS_BLEND,     // a word, but for those that librsvg does not have
     FL_CSS_TEXT,      // librsvg reads it as a browser does
     FL_CSS_GEOMETRY,  // a length that librsvg knows as an attribute only
     FL_CSS_TRANSFORM, // becomes the attribute `transform`
@@ -26,6 +27,9 @@ typedef struct FlCssProperty {
 
 /** A property by its name in lower case; NULL if it is unknown. */
 const FlCssProperty *fl_css_property(const char *name);
+
+/** The i-th of all that are known; NULL after the last. */
+const FlCssProperty *fl_css_property_at(int i);
 
 /** Returns: true if `value` can be one of the property, or is one for all properties. */
 bool fl_css_is_valid(const FlCssProperty *property, const char *value);

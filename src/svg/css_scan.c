@@ -45,12 +45,21 @@ const char *fl_css_find_past(const char *s, const char *stops)
     return s;
 }
 
+/** The bytes of an escape, from its backslash on: a character, or up to six digits and a space. */
+static size_t escape_bytes(const char *s)
+{
+    size_t n = 1;
+    while (n <= 6 && g_ascii_isxdigit(s[n]))
+        n++;
+    return n == 1 ? 2 : n + (s[n] && strchr(FL_CSS_SPACE, s[n]));
+}
+
 size_t fl_css_identifier(const char *s)
 {
     size_t n = 0;
     while (g_ascii_isalnum(s[n]) || s[n] == '-' || s[n] == '_' || (guchar)s[n] >= 0x80 ||
            (s[n] == '\\' && s[n + 1] && s[n + 1] != '\n'))
-        n += s[n] == '\\' ? 2 : 1;
+        n += s[n] == '\\' ? escape_bytes(s + n) : 1;
     const bool starts = n > 0 && !g_ascii_isdigit(s[0]) && !(s[0] == '-' && n == 1);
     return starts ? n : 0;
 }
@@ -92,7 +101,8 @@ char *fl_css_without_comments(const char *css)
         } else if (css[0] == '/' && css[1] == '*') {
             const char *end = strstr(css + 2, "*/");
             next = end ? end + 2 : css + strlen(css);
-            g_string_append_c(out, ' ');
+            if (!*next || !strchr(".#[:", *next)) // a space there would combine two selectors
+                g_string_append_c(out, ' ');
         } else if (g_str_has_prefix(css, "<!--") || g_str_has_prefix(css, "-->")) {
             next = css + (*css == '<' ? 4 : 3);
             g_string_append_c(out, ' ');

@@ -227,7 +227,7 @@ bool fl_css_position(const char *text, const FlCssUnits *units, FlCssBox box, Fl
     g_auto(GStrv) part = fl_css_split(text, ' ');
     const char *axis[2] = {part[0], part[0] && part[1] ? part[1] : "50%"};
     double v[2];
-    if (!part[0])
+    if (!part[0] || (part[1] && part[2] && part[3]))
         return false;
     if (strcmp(axis[0], "top") == 0 || strcmp(axis[0], "bottom") == 0 ||
         strcmp(axis[1], "left") == 0 || strcmp(axis[1], "right") == 0) {
@@ -350,6 +350,8 @@ static char *rect_shape(const char *name, const char *arguments, const FlCssUnit
         else if (!fl_css_number(text, units, whole, &v[i]))
             return NULL;
     }
+    if (corner[0] && corner[1])
+        return NULL; // corners of their own
     if (corner[0] && !fl_css_number(corner[0], units, MIN(box.width, box.height), &radius))
         return NULL;
     if (xywh)

@@ -25,6 +25,7 @@ struct FlCssSheet {
     GPtrArray *selectors;  // GPtrArray of FlSelector: owns them
     GHashTable *keyframes; // name -> GArray of FlCssKeyframe
     GArray *initial;       // FlCssDeclaration, of @property
+    GHashTable *own;       // names of @property that children do not inherit
     GPtrArray *layers;     // Layer, the root first
 };
 
@@ -272,12 +273,14 @@ static void read_keyframes(Reader *reader, const char *name, const char *block)
     g_hash_table_replace(reader->sheet->keyframes, g_strdup(name), frames);
 }
 
-/** @property --name { initial-value: … }. */
+/** @property --name { initial-value: …; inherits: … }. */
 static void read_property(Reader *reader, const char *name, const char *block)
 {
     g_autoptr(GArray) list = fl_css_declarations(block);
     for (guint i = 0; i < list->len; i++) {
         const FlCssDeclaration *d = &g_array_index(list, FlCssDeclaration, i);
+        if (strcmp(d->name, "inherits") == 0 && strcmp(d->value, "false") == 0)
+            g_hash_table_add(reader->sheet->own, g_strdup(name));
         if (strcmp(d->name, "initial-value") != 0)
             continue;
         const FlCssDeclaration initial = {g_intern_string(name), g_strdup(d->value), false};
@@ -391,6 +394,8 @@ static void read_at_rule(Reader *reader, const char *name, const char *prelude, 
     } else if (strcmp(name, "supports") == 0 && block) {
         if (fl_css_supports(prelude))
             read_group(reader, block, place);
+        else if (strstr(prelude, "selector("))
+            warn(reader, "rule", prelude, "asks for a selector that is not known and is left out");
     } else if ((strcmp(name, "keyframes") == 0 || strcmp(name, "-webkit-keyframes") == 0) &&
                block) {
         g_autofree char *plain = fl_css_string_or_url(prelude);
@@ -500,6 +505,7 @@ FlCssSheet *fl_css_sheet_take(xmlDoc *doc, const char *path, int number, FlCssPa
     sheet->selectors = g_ptr_array_new_with_free_func((GDestroyNotify)g_ptr_array_unref);
     sheet->keyframes = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, keyframes_free);
     sheet->initial = declarations_new();
+    sheet->own = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     sheet->layers = g_ptr_array_new_with_free_func(layer_free);
     Reader reader = {sheet, path, number, page, files, warnings};
     const Place place = {path, NULL, layer_new(sheet, NULL, ""), 0};
@@ -520,6 +526,7 @@ void fl_css_sheet_free(FlCssSheet *sheet)
         return;
     g_array_unref(sheet->rules);
     g_array_unref(sheet->initial);
+    g_hash_table_unref(sheet->own);
     g_ptr_array_unref(sheet->selectors);
     g_hash_table_unref(sheet->keyframes);
     g_ptr_array_unref(sheet->layers);
@@ -539,4 +546,9 @@ const GArray *fl_css_sheet_keyframes(const FlCssSheet *sheet, const char *name)
 const GArray *fl_css_sheet_initial(const FlCssSheet *sheet)
 {
     return sheet->initial;
+}
+
+GHashTable *fl_css_sheet_own(const FlCssSheet *sheet)
+{
+    return sheet->own;
 }

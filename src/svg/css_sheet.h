@@ -50,6 +50,9 @@ const GArray *fl_css_sheet_keyframes(const FlCssSheet *sheet, const char *name);
 /** Initial values of @property, FlCssDeclaration. */
 const GArray *fl_css_sheet_initial(const FlCssSheet *sheet);
 
+/** The set of names of custom properties that children do not inherit. */
+GHashTable *fl_css_sheet_own(const FlCssSheet *sheet);
+
 /** Reads declarations, those of a style attribute; an array of FlCssDeclaration, to be unref'd. */
 GArray *fl_css_declarations(const char *text);
 

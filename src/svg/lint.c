@@ -169,8 +169,19 @@ static void check_foreign(const Lint *lint, xmlNode *node)
     xmlSetProp(node, (const xmlChar *)"fill", (const xmlChar *)colour);
 }
 
+/** Warns of text that librsvg cannot lay out. */
+static void check_text(const Lint *lint, const xmlNode *node)
+{
+    g_autoptr(xmlChar) length = fl_attribute(node, "textLength");
+    if (fl_is(node, "textPath"))
+        warn(lint, node, "text on a path is left out");
+    if (length)
+        warn(lint, node, "textLength is left out: the text has its own width");
+}
+
 static void lint_node(const Lint *lint, xmlNode *node)
 {
+    check_text(lint, node);
     if (fl_is(node, "foreignObject"))
         check_foreign(lint, node);
     check_references(lint, node);

@@ -190,6 +190,17 @@ static xmlNode *place(xmlNode *use, const xmlChar *x, const xmlChar *y)
     return svg;
 }
 
+int fl_use_show(xmlNode *use, xmlNode *shown)
+{
+    g_autoptr(xmlChar) x = take(use, "x"), y = take(use, "y");
+    g_autoptr(xmlChar) width = take(use, "width"), height = take(use, "height");
+    g_autoptr(xmlChar) reference = take_reference(use);
+    const int n = put_ids_aside(shown);
+    xmlNodeSetName(use, (const xmlChar *)"g");
+    show_copy(place(use, x, y), shown, width, height);
+    return n;
+}
+
 static bool is_cycle(const xmlNode *use, const xmlNode *target, const Chain *chain)
 {
     for (const Chain *c = chain; c; c = c->outer)
@@ -205,22 +216,20 @@ static bool resolve_use(Work *work, xmlNode *use, const Chain *chain, GError **e
     g_autoptr(xmlChar) href = take_reference(use);
     if (href && href[0] != '#')
         return true; // another file, which librsvg draws as one leaf
-    g_autoptr(xmlChar) x = take(use, "x"), y = take(use, "y");
-    g_autoptr(xmlChar) width = take(use, "width"), height = take(use, "height");
+    g_autoptr(xmlChar) width = fl_attribute(use, "width"), height = fl_attribute(use, "height");
     xmlNode *target = href ? g_hash_table_lookup(work->ids, href + 1) : NULL;
     g_autoptr(xmlChar) id = fl_attribute(use, "id");
-    xmlNodeSetName(use, (const xmlChar *)"g");
     if (target && is_cycle(use, target, chain)) {
         const bool made = id && g_str_has_prefix((const char *)id, FL_GROUP_ID);
         fl_warnings_add(work->warnings, work->path, work->number, made ? NULL : (const char *)id,
                         "<use> of “%s” shows itself and is left out", href);
-        return true;
+        target = NULL;
     }
-    if (!target || is_zero(width) || is_zero(height))
+    if (!target || is_zero(width) || is_zero(height)) {
+        xmlNodeSetName(use, (const xmlChar *)"g");
         return true; // it is invisible
-    xmlNode *copy = xmlDocCopyNode(target, use->doc, 1);
-    work->n_copied += put_ids_aside(copy);
-    show_copy(place(use, x, y), copy, width, height);
+    }
+    work->n_copied += fl_use_show(use, xmlDocCopyNode(target, use->doc, 1));
     if (!fl_limit_check(FL_LIMIT_ELEMENTS, work->n_copied, work->path, error))
         return false;
     const Chain inner = {chain, target};

@@ -29,6 +29,12 @@ bool fl_is_whole(const xmlNode *node, const char *const *whole);
 bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *path, int number,
                            FlWarnings *warnings, GError **error);
 
+/**
+ * Makes a <use> a <g> with `shown`, a deep copy of what it shows, which is
+ * then owned by the document. Returns: the number of elements of the copy.
+ */
+int fl_use_show(xmlNode *use, xmlNode *shown);
+
 /** Returns: true if fl_document_normalise() has work: the document draws a <use> or <switch>. */
 bool fl_document_is_rewritten(const xmlDoc *doc);
 
