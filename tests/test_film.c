@@ -683,6 +683,30 @@ static void frames_that_begin_at_nought_are_put_back(void)
     }
 }
 
+/* A house that is hidden in the middle of a loop, each frame cut off to the left of its shapes. */
+static void a_frame_finds_its_place_by_shapes_seen_long_before(void)
+{
+    static const char *const frame[] = {
+        "<path d='M40,0h30v40h-30z' fill='#cc3333'/><circle cx='8' cy='20' r='8' fill='#3333cc'/>",
+        "<circle cx='8' cy='20' r='8' fill='#3333cc'/>",
+        "<path d='M0,0h30v40h-30z' fill='#cc3333'/>"};
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < 3; t++) {
+        g_autofree char *name = g_strdup_printf("%d.svg", t);
+        g_autofree char *text =
+            g_strdup_printf("<svg xmlns='http://www.w3.org/2000/svg'>%s</svg>", frame[t]);
+        G_GNUC_UNUSED g_autofree char *path = scratch_write(folder, name, text);
+    }
+    const FlDrawingOptions options = {.registered = true};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    const int width = fl_drawing_width(drawing), height = fl_drawing_height(drawing);
+    g_autofree uint8_t *first = g_malloc((size_t)width * height);
+    g_autofree uint8_t *last = g_malloc((size_t)width * height);
+    mask_of(drawing, 0, 0, first);
+    mask_of(drawing, 2, 0, last);
+    g_assert_cmpmem(last, width * height, first, width * height);
+}
+
 static void an_empty_frame_is_a_frame(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -721,6 +745,7 @@ int main(int argc, char **argv)
     TEST("mask-over-overlap", a_mask_over_shapes_that_overlap_is_told);
     TEST("fall-back-in-a-frame", a_group_that_is_taken_as_one_in_a_frame_is_so_in_all);
     TEST("registered", frames_that_begin_at_nought_are_put_back);
+    TEST("registered-loop", a_frame_finds_its_place_by_shapes_seen_long_before);
     TEST("layers-that-come-and-go-keep-their-regions", layers_that_come_and_go_keep_their_regions);
     TEST("limbs-that-are-strokes-are-painted", limbs_that_are_strokes_are_painted);
     TEST("strokes-over-fills-are-drawn-as-they-are", strokes_over_fills_are_drawn_as_they_are);

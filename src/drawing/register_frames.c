@@ -6,26 +6,76 @@
 #define PAGE_PX 1000.0 // of the page on which shapes are measured, one user unit a pixel
 #define SIZE_PX 0.35   // by how much the size of a shape may differ; files have one decimal
 #define MOVE_PX 0.6    // by how much two moves may differ to be one
+#define MOST_RESTS 20  // frames after which a shape does not count for more
+#define MOST_KNOWN 4000
 
-/** The move that a pair of shapes votes for. */
+/** A shape in its place on the page of the first frame, where it was seen last. */
+typedef struct Known {
+    FlShape shape;
+    int rests; // frames in which it was there before
+    bool here; // in this frame
+} Known;
+
+/** The place of the frame that a shape votes for, by that where it was. */
 typedef struct Vote {
     double x, y, weight;
 } Vote;
 
-static GArray *votes_of(const GArray *before, const GArray *now)
+static bool is_same(const FlShape *a, const FlShape *b)
+{
+    return a->paint == b->paint && fabs(a->width - b->width) <= SIZE_PX &&
+           fabs(a->height - b->height) <= SIZE_PX;
+}
+
+/** What has rested for long counts more than what moves, and so does what is large. */
+static GArray *votes_of(const GArray *known, const GArray *now)
 {
     GArray *votes = g_array_new(FALSE, FALSE, sizeof(Vote));
-    for (guint i = 0; i < before->len; i++)
+    for (guint i = 0; i < known->len; i++)
         for (guint j = 0; j < now->len; j++) {
-            const FlShape *a = &g_array_index(before, FlShape, i),
-                          *b = &g_array_index(now, FlShape, j);
-            if (a->paint != b->paint || fabs(a->width - b->width) > SIZE_PX ||
-                fabs(a->height - b->height) > SIZE_PX)
+            const Known *k = &g_array_index(known, Known, i);
+            const FlShape *a = &k->shape, *b = &g_array_index(now, FlShape, j);
+            if (!is_same(a, b))
                 continue;
-            const Vote vote = {a->x - b->x, a->y - b->y, (a->width + 1) * (a->height + 1)};
+            const double area = (a->width + 1) * (a->height + 1);
+            const Vote vote = {a->x - b->x, a->y - b->y, area * (1 + MIN(k->rests, MOST_RESTS))};
             g_array_append_val(votes, vote);
         }
     return votes;
+}
+
+/** The known shape that is nearest to one of this frame, and has not been seen in it. */
+static Known *nearest(const GArray *known, const FlShape *shape, double *away)
+{
+    Known *found = NULL;
+    *away = INFINITY;
+    for (guint i = 0; i < known->len; i++) {
+        Known *k = &g_array_index(known, Known, i);
+        const double d = hypot(k->shape.x - shape->x, k->shape.y - shape->y);
+        if (!k->here && is_same(&k->shape, shape) && d < *away)
+            found = k, *away = d;
+    }
+    return found;
+}
+
+/** Notes where the shapes of a frame at `place` are. Those that rest keep their first place, so
+ * that errors of frames do not add up. */
+static void learn(GArray *known, const GArray *now, const double place[2])
+{
+    for (guint i = 0; i < known->len; i++)
+        g_array_index(known, Known, i).here = false;
+    for (guint j = 0; j < now->len; j++) {
+        FlShape shape = g_array_index(now, FlShape, j);
+        double away;
+        shape.x += place[0], shape.y += place[1];
+        Known *k = nearest(known, &shape, &away);
+        if (k && away <= MOVE_PX)
+            k->rests++, k->here = true;
+        else if (k)
+            *k = (Known){shape, 0, true};
+        else if (known->len < MOST_KNOWN)
+            g_array_append_val(known, ((Known){shape, 0, true}));
+    }
 }
 
 static bool agree(const Vote *a, const Vote *b)
@@ -41,7 +91,7 @@ static int compare_votes(const void *a, const void *b)
 
 #define MOST_CANDIDATES 500 // the largest shapes decide
 
-/** The move with the most votes; its weight is 0 without votes. */
+/** The place with the most votes; its weight is 0 without votes. */
 static Vote decide(GArray *votes)
 {
     Vote best = {0};
@@ -85,7 +135,7 @@ static void widen(FlCanvas *page, const GArray *shapes, double x, double y, bool
 static double *places_of(FlSurvey *survey, FlCanvas *page, FlWarnings *warnings, GError **error)
 {
     g_autofree double *place = g_new0(double, 2 * (gsize)survey->n_frames);
-    g_autoptr(GArray) before = NULL;
+    g_autoptr(GArray) known = g_array_new(FALSE, FALSE, sizeof(Known));
     bool any = false, good = true;
     for (int t = 0; t < survey->n_frames; t++) {
         const char *file = survey->sequence->file[t];
@@ -99,18 +149,16 @@ static double *places_of(FlSurvey *survey, FlCanvas *page, FlWarnings *warnings,
             return NULL;
         }
         g_autoptr(GArray) now = measures.shapes;
-        g_autoptr(GArray) votes = before ? votes_of(before, now) : NULL;
-        const Vote move = votes ? decide(votes) : (Vote){0};
-        if (votes && before->len > 0 && now->len > 0 && move.weight <= 0)
+        g_autoptr(GArray) votes = votes_of(known, now);
+        const Vote found = decide(votes);
+        double *own = &place[2 * t];
+        if (known->len > 0 && now->len > 0 && found.weight <= 0)
             fl_warnings_add(warnings, file, number, NULL,
-                            "no shape in common with the frame before: not moved by ‘register’");
+                            "no shape in common with the frames before: not moved by ‘register’");
         for (int c = 0; c < 2 && t > 0; c++)
-            place[2 * t + c] = place[2 * (t - 1) + c] + (c ? move.y : move.x);
-        widen(page, now, place[2 * t], place[2 * t + 1], &any);
-        if (now->len > 0 || !before) { // an empty frame is stepped over
-            g_clear_pointer(&before, g_array_unref);
-            before = g_steal_pointer(&now);
-        }
+            own[c] = found.weight > 0 ? (c ? found.y : found.x) : own[c - 2];
+        widen(page, now, own[0], own[1], &any);
+        learn(known, now, own);
     }
     return good ? g_steal_pointer(&place) : NULL;
 }
