@@ -1,7 +1,8 @@
 #!/bin/bash
-# Plans for farms whose files have hostile names: stand-ins for the schedulers record what is executed.
+# Plans for farms, films and plug-ins whose files have hostile names: stand-ins record what is executed.
 # usage: plan_names.sh PROGRAM FIXTURES; speaks TAP.
 # shellcheck source-path=SCRIPTDIR source=film.sh
+plugin=$(realpath "${0%/*}/../src/plugins/inkscape/fluidy_paint.py")
 . "${0%/*}/film.sh"
 
 # Each of these would run `pwn` if a name became a part of a program.
@@ -33,6 +34,11 @@ done
 echo 7
 END
 printf '#!/bin/sh\ntouch "$PWNED"\n' >bin/pwn
+cat >bin/ffmpeg <<'END' # it writes what it is fed, or says what it was to read
+#!/bin/bash
+case " $* " in *' -nostdin '*) echo "${*//$'\n'/ }" >&2 && exit 1 ;; esac
+exec cat >&3
+END
 chmod +x bin/*
 export PWNED=$PWD/pwned RECORD=
 drawing 1.svg 24 1
@@ -90,9 +96,23 @@ for dialect in dialects:
     assert len(got) == 3 and all("./" + name in call and call[0].endswith("/" + name) for call in got)
 END
 
+# film: a film, a sheet of paper and the folder of a plug-in have the hostile name.
+film() {
+    local here=$PWD place=$PWD/$place
+    cd "$place" && printf '\xff\xd8\xff' >"$name.jpg" || return 1
+    PATH=$here/bin:$PATH "$program" "./$name" -s "$style" -q -y -W 24 --no-frames -o "./$name.mov" --cache off 2>"$here/err" &&
+        [ -s "./$name.mov" ] || is_wrong film
+    PATH=$here/bin:$PATH "$program" "./$name" -s "$style" -q -y -W 24 --paper "./$name.jpg" -o ./p%d.png --cache off 2>"$here/err"
+    grep -q 'file:.*\.jpg' "$here/err" || is_wrong paper
+    HOME=$here RECORD=$here/plugin.record PATH=$here/bin:$PATH python3 -B "$plugin" --style=ink --result=folder \
+        --folder="$place/$name" --frames=drawing "$here/1.svg" >"$here/out" 2>"$here/err"
+    grep -zqF -- "${place//%/%%}/${name//%/%%}/painted_%04d.png" "$here/plugin.record" || is_wrong plug-in
+    cd "$here" || exit 1
+}
+
 is_wrong() { # is_wrong DIALECT
     wrong=$((wrong + 1))
-    echo "# wrong in $1: $(printf %q "$name"): $(tail -1 err)"
+    echo "# wrong in $1: $(printf %q "$name"): $(tail -1 "$folder/err")"
 }
 
 executed=0 wrong=0 refused=0 names=0
@@ -120,6 +140,7 @@ for head in "${heads[@]}"; do
             RECORD='' PATH=$PWD/bin:$PATH python3 run.py "$name" "${planned[@]}" >out 2>err ||
                 is_wrong "${planned[*]}"
         fi
+        [ "$head" != "${heads[0]}" ] || film
         if [ -e pwned ]; then
             executed=$((executed + 1))
             echo "# executed: $(printf %q "$name")"
@@ -128,7 +149,7 @@ for head in "${heads[@]}"; do
     done
 done
 [ $names -ge 70 ] && [ $executed = 0 ]
-result $? "none of $names hostile names is executed by a plan, $executed are"
+result $? "none of $names hostile names is executed by a plan, a film or a plug-in, $executed are"
 [ $wrong = 0 ]
 result $? "each command gets the names as they are, or the plan is refused ($refused), $wrong are wrong"
 

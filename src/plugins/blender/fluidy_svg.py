@@ -336,7 +336,7 @@ def export_frames(context, folder):
         with open(os.path.join(folder, f'frame_{frame:04d}.svg'), 'w', encoding='utf-8') as file:
             file.write(frame_svg(context, lost))
     scene.frame_set(before)
-    return os.path.join(folder, 'frame_%04d.svg'), sorted(lost)
+    return os.path.join(folder.replace('%', '%%'), 'frame_%04d.svg'), sorted(lost)
 
 
 # ---- the program ---------------------------------------------------------------------------------
@@ -469,7 +469,7 @@ class FLUIDY_OT_paint(bpy.types.Operator):
     def start(self, context):
         settings = context.scene.fluidy
         folder = bpy.path.abspath(settings.folder)
-        self.pattern = os.path.join(folder, 'painted_%04d.png')
+        self.pattern = os.path.join(folder.replace('%', '%%'), 'painted_%04d.png')
         frames, lost = export_frames(context, os.path.join(folder, 'drawing'))
         if lost:
             self.report({'WARNING'}, 'Drawn otherwise, since SVG cannot say it: ' + '; '.join(lost))

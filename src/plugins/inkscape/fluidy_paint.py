@@ -126,7 +126,7 @@ def main(words):
         with open(drawing, 'w', encoding='utf-8') as file:
             document.writexml(file, encoding='utf-8')
         folder = choice.folder if choice.result == 'folder' else os.path.join(scratch, 'painted')
-        said = run(command(choice, drawing, os.path.join(folder, 'painted_%04d.png')))
+        said = run(command(choice, drawing, os.path.join(folder.replace('%', '%%'), 'painted_%04d.png')))
         frames = sorted(glob.glob(os.path.join(glob.escape(folder), 'painted_*.png')))
         if choice.result == 'layer':
             add_painting(document, choice.other_style or choice.style, frames)
