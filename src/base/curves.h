@@ -3,6 +3,7 @@
 #define FLUIDY_BASE_CURVES_H
 
 #include <glib.h>
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -46,6 +47,31 @@ static inline float fl_fall(float x)
 static inline float fl_bell(float x)
 {
     return fl_fall(x * x);
+}
+
+/** The weights of four neighbours, for a place that is t of the way from the second to the third:
+ * Catmull and Rom's, exact at neighbours [Keys81]. */
+static inline void fl_cubic_weights(float t, float weight[4])
+{
+    weight[0] = ((-.5f * t + 1) * t - .5f) * t;
+    weight[1] = (1.5f * t - 2.5f) * t * t + 1;
+    weight[2] = ((-1.5f * t + 2) * t + .5f) * t;
+    weight[3] = (.5f * t - .5f) * t * t;
+}
+
+/** A plane between its values, by them; its rim goes on outside. 0, 0 is the first value. */
+static inline float fl_cubic_sample(const float *plane, int width, int height, float x, float y)
+{
+    const float fx = floorf(x), fy = floorf(y);
+    float across[4], down[4], sum = 0;
+    fl_cubic_weights(x - fx, across);
+    fl_cubic_weights(y - fy, down);
+    for (int j = 0; j < 4; j++)
+        for (int i = 0; i < 4; i++)
+            sum += down[j] * across[i] *
+                   plane[(size_t)CLAMP((int)fy - 1 + j, 0, height - 1) * (size_t)width +
+                         (size_t)CLAMP((int)fx - 1 + i, 0, width - 1)];
+    return sum;
 }
 
 /** A normal variable as a uniform one, 0..1. */

@@ -23,6 +23,17 @@ static inline bool fl_digest_is_same(FlDigest x, FlDigest y)
     return x.a == y.a && x.b == y.b;
 }
 
+/** GHashFunc and GEqualFunc of digests. */
+static inline unsigned fl_digest_hash(const void *digest)
+{
+    return (unsigned)((const FlDigest *)digest)->a;
+}
+
+static inline int fl_digest_equal(const void *x, const void *y)
+{
+    return fl_digest_is_same(*(const FlDigest *)x, *(const FlDigest *)y);
+}
+
 /** Adds a piece; where it begins and ends counts, as does the order of pieces. */
 void fl_digest_add(FlDigest *digest, const void *data, size_t bytes);
 

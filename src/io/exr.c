@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/schedule.h"
-#include "io/atomic_file.h"
 #include "io/formats.h"
 #include "io/provenance.h"
 
@@ -302,26 +301,20 @@ static bool put_file(Writer *writer, FlAtomicFile *file, const FlSinkFrame *fram
 
 static bool exr_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
 {
-    const FlSinkParams *params = &sink->params;
-    g_autofree char *path = fl_sink_file(params, frame->number, error);
-    g_auto(FlAtomicFile) file = {0};
-    g_autofree char *mark = fl_sink_mark(sink, frame->number);
-    Writer writer = {.mark = mark, .width = params->width, .height = params->height};
+    Writer writer = {
+        .mark = sink->mark, .width = sink->params.width, .height = sink->params.height};
+    const char *path = sink->file.path;
     GError *problem = NULL;
-    if (!path || !fl_atomic_open(&file, path, params->overwrite, error))
-        return false;
     fill_halves();
-    const bool put = put_file(&writer, &file, frame, &problem);
+    const bool put = put_file(&writer, &sink->file, frame, &problem);
     g_free(writer.layer);
     g_free(writer.component);
-    if (put)
-        return fl_atomic_seal(&file, mark, error);
     if (problem)
         g_propagate_prefixed_error(error, problem, "%s: ", path);
-    else
+    else if (!put)
         g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
                     exr_get_default_error_message(writer.result));
-    return false;
+    return put;
 }
 
 const FlSinkFormat fl_sink_exr = {

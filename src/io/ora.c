@@ -1,6 +1,5 @@
 /* OpenRaster files [freedesktop.org, OpenRaster 0.0.5], which Krita, MyPaint and GIMP open. */
 #include "base/error.h"
-#include "io/atomic_file.h"
 #include "io/formats.h"
 #include "io/png.h"
 
@@ -246,20 +245,13 @@ static void ora_clear(FlSink *sink)
 
 static bool ora_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
 {
-    g_autofree char *path = fl_sink_file(&sink->params, frame->number, error);
-    g_auto(FlAtomicFile) file = {0};
-    g_autofree char *mark = fl_sink_mark(sink, frame->number);
     Archive archive = {0};
-    if (!path || !fl_atomic_open(&file, path, sink->params.overwrite, error))
-        return false;
-    const bool put = archive_open(&archive) &&
-                     add_parts(&archive, &sink->params, sink->state, frame) &&
-                     archive_mark(&archive, mark) && archive_store(&archive, file.stream);
+    const bool put =
+        archive_open(&archive) && add_parts(&archive, &sink->params, sink->state, frame) &&
+        archive_mark(&archive, sink->mark) && archive_store(&archive, sink->file.stream);
     archive_clear(&archive);
-    if (put)
-        return fl_atomic_seal(&file, mark, error);
-    return fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
-                   "the archive could not be made; is the disk full?");
+    return put || fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot be written: %s", sink->file.path,
+                          "the archive could not be made; is the disk full?");
 }
 
 const FlSinkFormat fl_sink_ora = {

@@ -2,7 +2,6 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/file.h"
-#include "io/atomic_file.h"
 #include "io/provenance.h"
 
 #include <errno.h>
@@ -221,18 +220,21 @@ GBytes *fl_png_encode(const FlPng *picture)
     return bytes;
 }
 
+bool fl_png_put(const FlPng *picture, FlAtomicFile *file, GError **error)
+{
+    Trouble trouble = {""};
+    Target target = {.stream = file->stream};
+    errno = 0;
+    return encode(picture, &target, &trouble) ||
+           fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot be written: %s", file->path,
+                   errno ? g_strerror(errno) : trouble.message);
+}
+
 bool fl_png_save(const FlPng *picture, const char *path, bool overwrite, GError **error)
 {
     g_auto(FlAtomicFile) file = {0};
-    Trouble trouble = {""};
-    if (!fl_atomic_open(&file, path, overwrite, error))
-        return false;
-    Target target = {.stream = file.stream};
-    errno = 0;
-    if (encode(picture, &target, &trouble))
-        return fl_atomic_seal(&file, picture->mark, error);
-    return fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
-                   errno ? g_strerror(errno) : trouble.message);
+    return fl_atomic_open(&file, path, overwrite, error) && fl_png_put(picture, &file, error) &&
+           fl_atomic_seal(&file, picture->mark, error);
 }
 
 FlPicture *fl_picture_read_png(const char *path, GError **error)

@@ -4,6 +4,7 @@
 
 #include "base/picture.h"
 #include "base/pixel_runs.h"
+#include "io/atomic_file.h"
 #include <stdbool.h>
 
 /** A picture to be written as PNG; one of rgba, runs and rgba16 is set. */
@@ -26,6 +27,9 @@ typedef struct FlPng {
  * Returns: false with FL_ERROR_OUTPUT, or FL_ERROR_EXISTS if it exists and overwrite is false.
  */
 bool fl_png_save(const FlPng *png, const char *path, bool overwrite, GError **error);
+
+/** Writes the bytes of the file, which is open. FL_ERROR_OUTPUT. */
+bool fl_png_put(const FlPng *png, FlAtomicFile *file, GError **error);
 
 /** Checks that a name ends in .png; else FL_ERROR_USAGE: `what`, such as "maps are", PNG files. */
 bool fl_png_named(const char *path, const char *what, GError **error);

@@ -7,11 +7,23 @@ char *fl_sink_file(const FlSinkParams *params, int number, GError **error)
     return fl_output_name(params->path, number, NULL, error);
 }
 
-char *fl_sink_mark(const FlSink *sink, int number)
+static char *mark_of(const FlSink *sink, int number)
 {
     const FlDigest made_from = sink->params.made_from;
     const bool of_frame = !sink->format->film && fl_digest_is_known(made_from);
     return fl_mark_text(of_frame ? fl_mark_of_frame(made_from, number) : made_from);
+}
+
+bool fl_sink_begin(FlSink *sink, GError **error)
+{
+    sink->mark = mark_of(sink, 0);
+    return fl_atomic_reserve(&sink->file, sink->params.path, sink->params.overwrite, error);
+}
+
+static void end_file(FlSink *sink)
+{
+    fl_atomic_clear(&sink->file);
+    g_clear_pointer(&sink->mark, g_free);
 }
 
 /** A pattern's mistakes show up before any frame is painted. */
@@ -34,13 +46,21 @@ FlSink *fl_sink_open(const FlSinkFormat *format, const FlSinkParams *params, GEr
 
 bool fl_sink_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
 {
-    return sink->format->frame(sink, frame, error);
+    if (sink->format->film)
+        return sink->format->frame(sink, frame, error);
+    g_autofree char *path = fl_sink_file(&sink->params, frame->number, error);
+    sink->mark = mark_of(sink, frame->number);
+    const bool done = path && fl_atomic_open(&sink->file, path, sink->params.overwrite, error) &&
+                      sink->format->frame(sink, frame, error) &&
+                      fl_atomic_seal(&sink->file, sink->mark, error);
+    end_file(sink);
+    return done;
 }
 
 bool fl_sink_finish(FlSink *sink, GError **error)
 {
-    sink->finished = !sink->format->finish || sink->format->finish(sink, error);
-    return sink->finished;
+    return (!sink->format->finish || sink->format->finish(sink, error)) &&
+           (!sink->file.stream || fl_atomic_seal(&sink->file, sink->mark, error));
 }
 
 void fl_sink_free(FlSink *sink)
@@ -49,6 +69,7 @@ void fl_sink_free(FlSink *sink)
         return;
     if (sink->format->clear)
         sink->format->clear(sink);
+    end_file(sink);
     g_free((char *)sink->params.path);
     g_free(sink);
 }

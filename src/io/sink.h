@@ -4,6 +4,7 @@
 
 #include "base/digest.h"
 #include "base/pixel_runs.h"
+#include "io/atomic_file.h"
 #include "io/child_process.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -55,7 +56,9 @@ typedef struct FlSinkParams {
 
 typedef struct FlSink FlSink;
 
-/** A format. The functions get a sink whose params are set; frames come one at a time, in order. */
+/** A format. The functions get a sink whose params are set; frames come one at a time, in order,
+ * and write sink->file, which begins and is completed outside, of a film from fl_sink_begin() on.
+ */
 typedef struct FlSinkFormat {
     const char *name;   // the word for --format
     const char *suffix; // the file name's end that means this format, ".png"; or NULL
@@ -67,14 +70,15 @@ typedef struct FlSinkFormat {
     bool (*open)(FlSink *sink, GError **error); // NULL: nothing to do
     bool (*frame)(FlSink *sink, const FlSinkFrame *frame, GError **error);
     bool (*finish)(FlSink *sink, GError **error); // NULL: nothing to do
-    void (*clear)(FlSink *sink); // frees `state` and, if unfinished, leaves no file; may be NULL
+    void (*clear)(FlSink *sink);                  // frees `state`; may be NULL
 } FlSinkFormat;
 
 struct FlSink {
     const FlSinkFormat *format;
     FlSinkParams params; // path is the sink's own copy
+    FlAtomicFile file;   // of the frame, or of the film
+    char *mark;          // that it has to hold; may be NULL
     void *state;         // the format's
-    bool finished;
 };
 
 /** All formats of this build, NULL at the end. */
@@ -99,8 +103,8 @@ bool fl_sink_finish(FlSink *sink, GError **error);
 /** Frees the sink; an unfinished film is gone, finished pictures stay. NULL is fine. */
 void fl_sink_free(FlSink *sink);
 
-/** The mark of a frame of this number, or of the film: to be freed; may be NULL. */
-char *fl_sink_mark(const FlSink *sink, int number);
+/** Begins the file of a film; formats call it. FL_ERROR_OUTPUT or FL_ERROR_EXISTS. */
+bool fl_sink_begin(FlSink *sink, GError **error);
 
 /** The file that a frame of this number goes to: to be freed; NULL with FL_ERROR_USAGE set. */
 char *fl_sink_file(const FlSinkParams *params, int number, GError **error);

@@ -1,6 +1,5 @@
 /* Films, through the ffmpeg program. */
 #include "base/error.h"
-#include "io/atomic_file.h"
 #include "io/child_process.h"
 #include "io/formats.h"
 
@@ -17,11 +16,6 @@ typedef struct Codec {
     const char *without_alpha; // the same for opaque frames
     bool yuv;                  // stored as Rec. 709 luma and chroma; else as sRGB
 } Codec;
-
-typedef struct VideoState {
-    FlAtomicFile file;
-    FlChild *child;
-} VideoState;
 
 /* One palette per frame keeps ffmpeg from holding the whole film, and suits paint that changes. */
 #define PALETTE                                                                                    \
@@ -98,23 +92,22 @@ static void add_colour(GPtrArray *arguments, const Codec *codec)
  * ffmpeg gets a descriptor, not a name: a slow ffmpeg of a killed process would open by name what
  * the next process writes. The descriptor is a new one, since the lock must stay ours alone.
  */
-static FlChild *start_ffmpeg(const FlSink *sink, const FlAtomicFile *file, GError **error)
+static FlChild *start_ffmpeg(const FlSink *sink, GError **error)
 {
     const Codec *codec = codec_of(sink->format);
-    g_autofree char *mark = fl_sink_mark(sink, 0);
     g_autoptr(GPtrArray) arguments = g_ptr_array_new_with_free_func(g_free);
     add_input(arguments, &sink->params);
     add_words(arguments, sink->params.opaque ? codec->without_alpha : codec->with_alpha);
     add_colour(arguments, codec);
-    if (mark) {
+    if (sink->mark) {
         add_words(arguments, "-metadata");
-        g_ptr_array_add(arguments, g_strconcat("comment=", mark, NULL));
+        g_ptr_array_add(arguments, g_strconcat("comment=", sink->mark, NULL));
     }
     add_words(arguments, "-f");
     g_ptr_array_add(arguments, g_strdup(codec->muxer));
     add_words(arguments, "file:" FL_CHILD_FILE);
     g_ptr_array_add(arguments, NULL);
-    const int fd = open(file->temporary, O_RDWR | O_CLOEXEC);
+    const int fd = open(sink->file.temporary, O_RDWR | O_CLOEXEC);
     if (fd < 0) {
         g_set_error_literal(error, FL_ERROR, FL_ERROR_OUTPUT, g_strerror(errno));
         return NULL;
@@ -129,8 +122,6 @@ static bool video_open(FlSink *sink, GError **error)
 {
     const FlSinkParams *params = &sink->params;
     g_autofree char *program = g_find_program_in_path("ffmpeg");
-    VideoState *state = g_new0(VideoState, 1);
-    sink->state = state;
     if (!program)
         return fl_fail(
             error, FL_ERROR_OUTPUT,
@@ -142,19 +133,18 @@ static bool video_open(FlSink *sink, GError **error)
                        "%s: H.264 has no transparency; expected a background, or a .mov, .webm or "
                        ".mkv file",
                        params->path);
-    if (!fl_atomic_reserve(&state->file, params->path, params->overwrite, error))
+    if (!fl_sink_begin(sink, error))
         return false;
-    state->child = start_ffmpeg(sink, &state->file, error);
-    if (!state->child)
+    sink->state = start_ffmpeg(sink, error);
+    if (!sink->state)
         g_prefix_error(error, "%s: ", params->path);
-    return state->child != NULL;
+    return sink->state != NULL;
 }
 
 static bool video_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
 {
-    VideoState *state = sink->state;
     const size_t bytes = (size_t)sink->params.width * (size_t)sink->params.height * 4;
-    if (fl_child_write(state->child, frame->rgba, bytes, error))
+    if (fl_child_write(sink->state, frame->rgba, bytes, error))
         return true;
     g_prefix_error(error, "%s: ", sink->params.path);
     return false;
@@ -162,23 +152,15 @@ static bool video_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
 
 static bool video_finish(FlSink *sink, GError **error)
 {
-    VideoState *state = sink->state;
-    if (!fl_child_finish(state->child, error)) {
-        g_prefix_error(error, "%s: ", sink->params.path);
-        return false;
-    }
-    g_autofree char *mark = fl_sink_mark(sink, 0);
-    return fl_atomic_seal(&state->file, mark, error);
+    if (fl_child_finish(sink->state, error))
+        return true;
+    g_prefix_error(error, "%s: ", sink->params.path);
+    return false;
 }
 
 static void video_clear(FlSink *sink)
 {
-    VideoState *state = sink->state;
-    if (state) {
-        fl_child_free(state->child);
-        fl_atomic_clear(&state->file);
-    }
-    g_clear_pointer(&sink->state, g_free);
+    fl_child_free(sink->state);
 }
 
 #define FILM(word, end, text)                                                                      \

@@ -36,16 +36,6 @@ struct FlStore {
     double added;  // bytes since the store was last trimmed
 };
 
-static guint hash_of(const void *name)
-{
-    return (guint)((const FlDigest *)name)->a;
-}
-
-static gboolean is_same(const void *a, const void *b)
-{
-    return fl_digest_is_same(*(const FlDigest *)a, *(const FlDigest *)b);
-}
-
 FlStore *fl_store_open(const FlStoreOptions *options)
 {
     const char *folder = options->folder;
@@ -59,7 +49,7 @@ FlStore *fl_store_open(const FlStoreOptions *options)
                             ? g_build_filename(g_get_user_cache_dir(), "fluidy-svg", "paint", NULL)
                             : g_strdup(folder);
     store->limit = MIB * (options->mib > 0 ? options->mib : DEFAULT_MIB);
-    store->link = g_hash_table_new(hash_of, is_same);
+    store->link = g_hash_table_new(fl_digest_hash, fl_digest_equal);
     store->most_held = G_MAXUINT;
     g_mutex_init(&store->lock);
     return store;

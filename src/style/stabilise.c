@@ -1,6 +1,7 @@
 #include "style/stabilise.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 
 #include <math.h>
 #include <string.h>
@@ -222,15 +223,6 @@ float fl_shake_extent(const FlShift *shift, int n_frames)
     return extent;
 }
 
-/* Catmull and Rom's cubic through four neighbours, u of the way from the second to the third. */
-static void cubic_weights(float u, float weight[4])
-{
-    weight[0] = ((-0.5f * u + 1) * u - 0.5f) * u;
-    weight[1] = (1.5f * u - 2.5f) * u * u + 1;
-    weight[2] = ((-1.5f * u + 2) * u + 0.5f) * u;
-    weight[3] = (0.5f * u - 0.5f) * u * u;
-}
-
 bool fl_shake_undo(uint8_t *plane, int width, int height, int channels, FlShift shift,
                    GError **error)
 {
@@ -241,8 +233,8 @@ bool fl_shake_undo(uint8_t *plane, int width, int height, int channels, FlShift 
     memcpy(copy, plane, bytes);
     const int dx = (int)floorf(shift.x), dy = (int)floorf(shift.y);
     float along[4], down[4];
-    cubic_weights(shift.x - (float)dx, along);
-    cubic_weights(shift.y - (float)dy, down);
+    fl_cubic_weights(shift.x - (float)dx, along);
+    fl_cubic_weights(shift.y - (float)dy, down);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++)
             for (int c = 0; c < channels; c++) {

@@ -113,27 +113,11 @@ static void read_frame(const Frame *frame, const float *velocity)
 /* ---- carrying ----------------------------------------------------------------------------------
  */
 
-/* Cubic interpolation [Keys81], exact at pixels. */
-static void cubic_weights(float f, float w[4])
-{
-    w[0] = ((-0.5f * f + 1) * f - 0.5f) * f, w[1] = (1.5f * f - 2.5f) * f * f + 1;
-    w[2] = ((-1.5f * f + 2) * f + 0.5f) * f, w[3] = (0.5f * f - 0.5f) * f * f;
-}
-
 /* Pixels beyond the plane repeat its nearest pixel. */
-static float cubic_sample(const float *plane, int width, int height, float x, float y)
+static float sample(const float *plane, int width, int height, float x, float y)
 {
-    x = fminf(fmaxf(x, 0), (float)(width - 1)), y = fminf(fmaxf(y, 0), (float)(height - 1));
-    const int x0 = (int)x, y0 = (int)y;
-    float wx[4], wy[4], sum = 0;
-    cubic_weights(x - (float)x0, wx), cubic_weights(y - (float)y0, wy);
-    for (int j = 0; j < 4; j++) {
-        const int row = CLAMP(y0 + j - 1, 0, height - 1);
-        for (int i = 0; i < 4; i++)
-            sum += wx[i] * wy[j] *
-                   plane[(size_t)row * (size_t)width + (size_t)CLAMP(x0 + i - 1, 0, width - 1)];
-    }
-    return sum;
+    return fl_cubic_sample(plane, width, height, fminf(fmaxf(x, 0), (float)(width - 1)),
+                           fminf(fmaxf(y, 0), (float)(height - 1)));
 }
 
 /* The last frame's potentials where the drawing has moved to. */
@@ -151,9 +135,8 @@ static void carry(const Frame *frame, const FlRefinement *last)
             const float dx = fl_mean_of_four(motion, 2, &four);
             const float dy = fl_mean_of_four(motion + 1, 2, &four);
             fl_region_plane_from_frame(&last->plane, at[0] - dx, at[1] - dy, at);
-            frame->before[p] =
-                cubic_sample(last->potential, before.width, before.height, at[0], at[1]);
-            frame->shown[p] = cubic_sample(last->shown, before.width, before.height, at[0], at[1]);
+            frame->before[p] = sample(last->potential, before.width, before.height, at[0], at[1]);
+            frame->shown[p] = sample(last->shown, before.width, before.height, at[0], at[1]);
         }
 }
 

@@ -1,6 +1,7 @@
 #include "watercolour/fine_sheet.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "base/noise.h"
 #include "base/rng.h"
 
@@ -30,29 +31,6 @@ struct FlFineSheet {
 static float cell_at(const float *plane, int width, int height, int i, int j)
 {
     return plane[(size_t)CLAMP(j, 0, height - 1) * (size_t)width + (size_t)CLAMP(i, 0, width - 1)];
-}
-
-/* The weights of four cells for a place between the middle two: Catmull and Rom's. */
-static void weights(float t, float w[4])
-{
-    w[0] = ((-.5f * t + 1) * t - .5f) * t;
-    w[1] = (1.5f * t - 2.5f) * t * t + 1;
-    w[2] = ((-1.5f * t + 2) * t + .5f) * t;
-    w[3] = (.5f * t - .5f) * t * t;
-}
-
-/* A plane of cells at a place; the middle of the first cell is 0, 0. */
-static float between(const float *plane, int width, int height, float x, float y)
-{
-    const float fx = floorf(x), fy = floorf(y);
-    const int i = (int)fx, j = (int)fy;
-    float across[4], down[4], sum = 0;
-    weights(x - fx, across);
-    weights(y - fy, down);
-    for (int k = 0; k < 4; k++)
-        for (int n = 0; n < 4; n++)
-            sum += down[k] * across[n] * cell_at(plane, width, height, i - 1 + n, j - 1 + k);
-    return sum;
 }
 
 /* Interpolation makes peaks flatter: the mean of it over a cell is the cell's value again if the
@@ -146,7 +124,7 @@ static void refine(const FlFineSheet *fine, const FlSheet *sheet, const float *s
             const size_t at = (size_t)j * (size_t)fine->fine->width + (size_t)i;
             const float x = ((float)i + .5f) * part - .5f + fine->bend_x[at];
             const float y = ((float)j + .5f) * part - .5f + fine->bend_y[at];
-            const float smooth = between(sharp, width, height, x, y);
+            const float smooth = fl_cubic_sample(sharp, width, height, x, y);
             const size_t cell =
                 (size_t)(j / fine->ratio) * (size_t)width + (size_t)(i / fine->ratio);
             const float more = 1 + fine->rough[cell] * fine->grain[at];
