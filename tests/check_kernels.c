@@ -408,7 +408,6 @@ enum { PIECES = 50 }; // of a contour
 /* Rows of noise, each from any address on, and what follows what is written. */
 typedef struct Noise {
     float f[8][2 * ROW + 16];
-    float any[5][2 * ROW + 16]; // of any sign
     int16_t s[3][ROW + 16];
     int32_t seed[ROW + 16];
     uint32_t pixel[ROW + 16];
@@ -420,13 +419,6 @@ typedef struct Noise {
     FlContourLinks links[PIECES];
     int32_t nearest[ROW + 16]; // a piece
 } Noise;
-
-/* Of the size of a flow, or from 0 and -0 to what cannot overflow in a sum. */
-static float any_float(FlRng *rng, bool extreme)
-{
-    static const float extremes[] = {0, -0.0f, 0x1p-149f, -0x1p-126f, 1, -1, 0x1p+110f, -0x1p+110f};
-    return extreme ? extremes[fl_rng_below(rng, 8)] : (float)(int32_t)fl_rng_u32(rng) * 0x1p-26f;
-}
 
 /* Pieces of a contour in any order, linked at random; one in eight is a disc. */
 static void make_contour(Noise *noise, FlRng *rng)
@@ -462,9 +454,6 @@ static void make_noise(Noise *noise, uint64_t seed)
     for (int k = 0; k < 8; k++)
         for (int i = 0; i < 2 * ROW + 16; i++) // some weights are 0
             noise->f[k][i] = (float)MAX((int)fl_rng_below(&rng, 5000) - 1000, 0) / 64;
-    for (int k = 0; k < 5; k++)
-        for (int i = 0; i < 2 * ROW + 16; i++)
-            noise->any[k][i] = any_float(&rng, extreme);
     for (int i = 0; i < ROW + 16; i++) {
         noise->s[0][i] = (int16_t)(fl_rng_below(&rng, LOOKS + 5) - 5);
         for (int c = 0; c < 4; c++)
@@ -484,18 +473,6 @@ static FlContourRow contour_of(Noise *z, int at)
                           .near_px = 12};
 }
 
-static FlStencil stencil_of(Noise *z, int at)
-{
-    return (FlStencil){.value = z->any[0] + at,
-                       .beside = z->any[1],
-                       .above = z->any[2] + at,
-                       .below = z->any[3],
-                       .source = z->any[4] + at,
-                       .inverse = z->f[1]};
-}
-
-static const size_t parents[2][4] = {{3, 0, 9, 10}, {7, 4, 5, 1}};
-
 /* Runs every loop of a version over rows of n, `at` bytes or elements from an aligned address. */
 static void run_rows(const FlRowKernels *rows, Noise *z, int n, int at)
 {
@@ -507,10 +484,6 @@ static void run_rows(const FlRowKernels *rows, Noise *z, int n, int at)
     rows->near_below(z->s[0], 9, z->s[1] + at, n);
     const FlContourRow contour = contour_of(z, at);
     rows->to_contour(&contour, z->f[3] + ROW + at, n);
-    const FlStencil cells = stencil_of(z, at);
-    rows->relax(&cells, n);
-    rows->refine(z->any[1], parents, z->f[6] + at, z->any[0] + at, n);
-    rows->add_residual(&cells, z->any[3] + ROW + at, z->any[4] + ROW + at, n / 2);
     rows->over(z->pixel + at, &sums, n);
     rows->level_opaque(&sums, z->pixel + at, n);
     rows->look_up(z->s[0] + at, z->look, z->sum[3] + at, n);
@@ -659,10 +632,6 @@ static void time_rows(const FlRowKernels *rows)
     TIME("near_below", rows->near_below(z.s[0], 9, z.s[1], ROW));
     const FlContourRow contour = contour_of(&z, 0);
     TIME("to_contour", rows->to_contour(&contour, z.f[3], ROW));
-    const FlStencil cells = stencil_of(&z, 0);
-    TIME("relax", rows->relax(&cells, ROW));
-    TIME("add_residual", rows->add_residual(&cells, z.f[0], z.f[7], ROW));
-    TIME("refine", rows->refine(z.any[1], parents, z.f[1], z.any[0], ROW));
     TIME("look_up", rows->look_up(z.s[0], z.look, z.sum[3], ROW));
     TIME("over", rows->over(z.pixel, &sums, ROW));
     TIME("level_opaque", rows->level_opaque(&sums, z.pixel, ROW));

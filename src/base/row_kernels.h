@@ -30,15 +30,6 @@ typedef struct FlOcclusion {
     bool knocks;             // true if the layer hides those below
 } FlOcclusion;
 
-/** Every other cell of a row of a diffusion grid, with its neighbours. */
-typedef struct FlStencil {
-    float *value;
-    const float *beside; // beside[i] is the value left of cell i, beside[i + 1] the value right
-    const float *above, *below;
-    const float *source;  // inflow from elsewhere
-    const float *inverse; // 1 / number of neighbours; 0 in a cell that keeps its value
-} FlStencil;
-
 /** A piece of contour: its middle, its inward unit normal, half its length; px. */
 typedef struct FlContourPiece {
     float x, y;
@@ -90,21 +81,6 @@ typedef struct FlRowKernels {
     /** Squared distances to the contour: from the best of a pixel's piece and those of its four
      * neighbours along links, as long as it gets nearer. */
     void (*to_contour)(const FlContourRow *row, float *squared, int n);
-
-    /** Diffusion: value = (sum of the neighbours' values + source) * inverse. */
-    void (*relax)(const FlStencil *cells, int n);
-
-    /** Adds the residuals of 2 n cells: of cell 2 i to even[i], of cell 2 i + 1 to odd[i]. */
-    void (*add_residual)(const FlStencil *cells, float *even, float *odd, int n);
-
-    /**
-     * Adds to 2 n values the sum of their four parents on the coarser level, 9 : 3 : 3 : 1, over
-     * the weight; a parent that the weight does not count is 0. Values of weight 0 stay. The
-     * parents of value[2 i] are coarse[parents[0][…] + i], those of value[2 i + 1] are at
-     * parents[1].
-     */
-    void (*refine)(const float *coarse, const size_t parents[2][4], const float *weight,
-                   float *value, int n);
 
     /** Colourise: rgba[i] = colours[amount[i]], as 32 bits; 0 where the amount is negative. */
     void (*look_up)(const int16_t *amount, const uint32_t *colours, uint32_t *rgba, int n);
