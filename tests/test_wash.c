@@ -405,6 +405,27 @@ static void a_calm_wash_keeps_rims_and_some_marks(void)
     g_assert_cmpint(found, >, middle / 20);
 }
 
+static void a_heart_is_light(void)
+{
+    const char *const frames[] = {"<circle id='c' fill='#5bb7d8' cx='200' cy='150' r='140'/>",
+                                  NULL};
+    const FlWashStyle style = {.wash = 1, .heart = 1};
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
+    g_autofree Tones *tones = lay_frame(drawing, 0, &style);
+    double n[2] = {0}, tone[2] = {0};
+    for (int i = 0; i < W * H; i++) {
+        const double depth = 140 - hypot(i % W - 200, i / W - 150);
+        const bool middle = depth > 80;
+        if (middle || (depth > 5 && depth < 30))
+            n[middle]++, tone[middle] += (double)tones->tone[i];
+    }
+    g_test_message("mean of ln near the rim %.3f, in the middle %.3f", tone[0] / n[0],
+                   tone[1] / n[1]);
+    g_assert_cmpfloat(tone[0] / n[0], >, .1);
+    g_assert_cmpfloat(tone[1] / n[1], <, -.1);
+}
+
 static void threads_and_parts_do_not_matter(void)
 {
     const char *const frames[] = {BLOB " id='b' transform='translate(180 150)'/>"
@@ -540,6 +561,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/dots-and-lines-have-none", dots_and_lines_have_none);
     g_test_add_func("/wash/a-calm-wash-keeps-rims-and-some-marks",
                     a_calm_wash_keeps_rims_and_some_marks);
+    g_test_add_func("/wash/a-heart-is-light", a_heart_is_light);
     g_test_add_func("/wash/threads-and-parts-do-not-matter", threads_and_parts_do_not_matter);
     g_test_add_func("/gaps/edges-are-off-by-a-hair", edges_are_off_by_a_hair);
     g_test_add_func("/pigments/they-mix-to-the-fill", pigments_mix_to_the_fill);

@@ -66,6 +66,9 @@ void fl_field_find_side(const FlWashField *field);
 /** Wet paint gathers inside contours that face the shadow. The page's edge is no contour. */
 void fl_field_find_pools(const FlWashField *field, float *pool);
 
+/** A share at each point by which it lies in the middle of something large. */
+void fl_field_find_heart(const FlWashField *field, float *heart);
+
 /** A share at each point by which it lies behind the rim, in what the recording paints evenly. */
 void fl_field_find_middle(const FlWashField *field, float *middle);
 

@@ -250,21 +250,35 @@ static void find_on_page(const FlWashField *field, int first, int n, int page_px
         share[i] = line[MIN(first / step + i, all - 1)];
 }
 
-void fl_field_find_pools(const FlWashField *field, float *pool)
+/* The mask, blurred; what lies beyond the page is as what lies on it. */
+static void blur_mask(const FlWashField *field, float sigma, float *plane)
 {
     const FlWash *wash = field->wash;
     const int width = wash->width, height = wash->height;
-    const float sigma = 1.2f * fl_clamp(.09f * field->size, 5, 20);
-    float *inside = field->room[0];
     g_autofree float *across = g_new(float, width);
     g_autofree float *down = g_new(float, height);
     find_on_page(field, wash->box.x, width, field->input->width, sigma, across);
     find_on_page(field, wash->box.y, height, field->input->height, sigma, down);
-    memcpy(inside, field->mask, fl_wash_points(wash) * sizeof *inside);
-    fl_field_blur(field, inside, sigma);
+    memcpy(plane, field->mask, fl_wash_points(wash) * sizeof *plane);
+    fl_field_blur(field, plane, sigma);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++)
-            inside[y * width + x] /= MAX(across[x] * down[y], .1f);
+            plane[y * width + x] /= MAX(across[x] * down[y], .1f);
+}
+
+void fl_field_find_heart(const FlWashField *field, float *heart)
+{
+    blur_mask(field, .22f * field->size, heart);
+    for (size_t i = 0; i < fl_wash_points(field->wash); i++)
+        heart[i] = fl_smooth((heart[i] - .6f) / .35f);
+}
+
+void fl_field_find_pools(const FlWashField *field, float *pool)
+{
+    const int width = field->wash->width, height = field->wash->height;
+    float *inside = field->room[0];
+    blur_mask(field, 1.2f * fl_clamp(.09f * field->size, 5, 20), inside);
+    memset(pool, 0, fl_wash_points(field->wash) * sizeof *pool);
     for (int y = 1; y < height - 1; y++)
         for (int x = 1; x < width - 1; x++) {
             const int i = y * width + x;

@@ -12,19 +12,20 @@
 static void put_together(const FlWashField *field)
 {
     const FlWash *wash = field->wash;
-    float *breadth = field->room[3], *pool = field->room[2];
+    float *breadth = field->room[3], *pool = field->room[2], *heart = field->room[4];
     float *tone = wash->plane[FL_WASH_TONE], *hue = wash->plane[FL_WASH_HUE];
     const size_t n = fl_wash_points(wash);
     const float quiet = 1 - .45f * fl_smooth(field->size / 300 - 1); // a ground is laid with care
     const float calm = wash->style.calm * MIN(wash->style.wash, 1);
-    memset(pool, 0, n * sizeof *pool);
     fl_field_find_pools(field, pool);
+    fl_field_find_heart(field, heart);
     fl_field_find_breadth(field, breadth);
     fl_field_find_middle(field, wash->plane[FL_WASH_CALM]);
     for (size_t i = 0; i < n; i++) {
         const float slow = tone[i];
         tone[i] = .24f * fl_clamp(field->side[i] + .45f * slow, -1.3f, 1.3f) + .12f * slow +
-                  .38f * wash->style.pool * pool[i];
+                  .38f * wash->style.pool * pool[i] -
+                  wash->style.heart * heart[i] * (.55f + .2f * slow);
         hue[i] = 1.25f * hue[i] + .45f * field->side[i];
     }
     fl_field_centre(field, breadth, tone);
@@ -135,6 +136,7 @@ FlWashStyle fl_wash_style_of(const FlPaintedRegion *painted)
                          .pool = said(t->pool, NAN, style->pool),
                          .blooms = said(t->blooms, NAN, style->blooms),
                          .calm = said(t->calm, NAN, style->calm),
+                         .heart = style->heart,
                          .hue = said(t->hue, 72 * t->pigments, style->hue)};
 }
 
@@ -148,7 +150,7 @@ static FlWashStyle style_of_region(const FlComposeInput *input, int first)
         mean.wash += share * style.wash, mean.passes += share * style.passes;
         mean.tide += share * style.tide, mean.pool += share * style.pool;
         mean.blooms += share * style.blooms, mean.hue += share * style.hue;
-        mean.calm += share * style.calm;
+        mean.calm += share * style.calm, mean.heart += share * style.heart;
     }
     return mean;
 }

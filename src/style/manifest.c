@@ -43,6 +43,7 @@ static const FlTableKey wash_keys[] = {
     {"pool", FL_KEY_OF(NUMBER, FlWashStyle, pool), 0, 2},
     {"blooms", FL_KEY_OF(NUMBER, FlWashStyle, blooms), 0, 2},
     {"calm", FL_KEY_OF(NUMBER, FlWashStyle, calm), 0, 1},
+    {"heart", FL_KEY_OF(NUMBER, FlWashStyle, heart), 0, 1},
     {"hue", FL_KEY_OF(NUMBER, FlWashStyle, hue), 0, 12},
 };
 
