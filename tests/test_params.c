@@ -63,7 +63,7 @@ static void a_bad_value_is_refused_with_range_and_unit(void)
         {"uni-radius", "5x", "uni-radius: “5x” is not an integer from 0 to 1000 frames"},
         {"rotate", "maybe", "rotate: “maybe” is not on or off"},
         {"opt-iterations", "4,,1",
-         "opt-iterations: “4,,1” is not one to eight integers separated by commas, each from 0 "
+         "opt-iterations: “4,,1” is not 1 to 8 integers, each from 0 "
          "to 100"},
         {"w-tmep", "1", "unknown parameter “w-tmep”; did you mean “w-temp”?"},
         {"elephant", "1", "unknown parameter “elephant”"},

@@ -2,40 +2,42 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "params/key_file.h"
 #include "params/text.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Numbers with spaces or commas between. Returns: how many, or -1 if one is missing or wrong. */
+/* Numbers with spaces or a comma between. Returns: how many, or -1 if one is missing or wrong. */
 static int read_numbers(const FlTableKey *key, const char *text, void *field)
 {
     const bool whole = key->type == FL_KEY_INTEGER;
     int n = 0;
-    for (; n < MAX(key->most, 1); n++) {
-        text += strspn(text, " ,\t");
+    for (; *text && n < MAX(key->most, 1); n++) {
         char *end = NULL;
         const double x = g_ascii_strtod(text, &end);
         if (end == text || !isfinite(x) || x < key->min || x > key->max || (whole && x != floor(x)))
-            break;
+            return -1;
         if (whole)
             ((int *)field)[n] = (int)x;
         else
             ((float *)field)[n] = (float)x;
-        text = end;
+        text = end + strspn(end, " \t");
+        if (*text == ',')
+            text += 1 + strspn(text + 1, " \t");
     }
-    return n < MAX(key->least, 1) || text[strspn(text, " ,\t")] ? -1 : n;
+    return n < MAX(key->least, 1) || *text || strchr(",\t ", text[-1]) ? -1 : n;
 }
 
-/* "a number", "2 to 4 whole numbers". */
+/* "a number", "2 numbers, each". To be freed. */
 static char *kind_of_numbers(const FlTableKey *key)
 {
-    const char *whole = key->type == FL_KEY_INTEGER ? "whole " : "";
+    const char *word = key->type == FL_KEY_INTEGER ? "integer" : "number";
     if (key->most <= 1)
-        return g_strdup_printf("a %snumber", whole);
+        return g_strdup(key->type == FL_KEY_INTEGER ? "an integer" : "a number");
     if (key->least == key->most)
-        return g_strdup_printf("%d %snumbers", key->most, whole);
-    return g_strdup_printf("%d to %d %snumbers", key->least, key->most, whole);
+        return g_strdup_printf("%d %ss, each", key->most, word);
+    return g_strdup_printf("%d to %d %ss, each", key->least, key->most, word);
 }
 
 static bool read_word(const FlTableKey *key, const char *text, int *field)
@@ -47,9 +49,9 @@ static bool read_word(const FlTableKey *key, const char *text, int *field)
     return known;
 }
 
-/* Returns: the number of values; -1 if the text is no value of the key. */
-static int read_value(const FlTableKey *key, const char *text, void *field)
+int fl_table_key_read(const FlTableKey *key, const char *text, void *object)
 {
+    void *const field = (char *)object + key->offset;
     switch (key->type) {
     case FL_KEY_TEXT:
         g_free(*(char **)field);
@@ -59,8 +61,7 @@ static int read_value(const FlTableKey *key, const char *text, void *field)
     case FL_KEY_INTEGER:
         return read_numbers(key, text, field);
     case FL_KEY_SWITCH:
-        *(bool *)field = strcmp(text, "on") == 0;
-        return *(bool *)field || strcmp(text, "off") == 0 ? 1 : -1;
+        return fl_text_bool(text, field) ? 1 : -1;
     case FL_KEY_COLOUR:
         return fl_text_colour(text, field) ? 1 : -1;
     case FL_KEY_WORD:
@@ -77,17 +78,18 @@ static char *one_of(const char *name, const char *const *names)
     return g_strdup_printf("one of %s%s", list, tail);
 }
 
-/* The values that a key takes, in words. To be freed. */
-static char *expectation(const FlTableKey *key, const char *value)
+char *fl_table_key_expects(const FlTableKey *key, const char *text)
 {
     if (key->type == FL_KEY_COLOUR)
         return g_strdup("a colour such as #f4efe6");
-    if (key->type == FL_KEY_NUMBER || key->type == FL_KEY_INTEGER) {
-        g_autofree char *kind = kind_of_numbers(key);
-        return g_strdup_printf("%s from %g to %g", kind, key->min, key->max);
+    if (key->type == FL_KEY_SWITCH)
+        return g_strdup("on or off");
+    if (key->type == FL_KEY_WORD) {
+        g_auto(GStrv) words = g_strsplit(key->words, "|", -1);
+        return one_of(text, (const char *const *)words);
     }
-    g_auto(GStrv) words = g_strsplit(key->type == FL_KEY_SWITCH ? "on|off" : key->words, "|", -1);
-    return one_of(value, (const char *const *)words);
+    g_autofree char *kind = kind_of_numbers(key);
+    return g_strdup_printf("%s from %g to %g", kind, key->min, key->max);
 }
 
 static bool unknown(const FlKeySection *section, const char *name, GError **error)
@@ -116,9 +118,8 @@ const FlTableKey *fl_key_section_set(FlKeySection *section, const char *name, co
         unknown(section, name, error);
     else if (section->n_values[i] > 0)
         fl_fail(error, section->mistake, "%s is given a second time", name);
-    else if ((section->n_values[i] =
-                  read_value(key, value, (char *)section->object + key->offset)) < 0) {
-        g_autofree char *expected = expectation(key, value);
+    else if ((section->n_values[i] = fl_table_key_read(key, value, section->object)) < 0) {
+        g_autofree char *expected = fl_table_key_expects(key, value);
         fl_fail(error, section->mistake, "%s = %s: expected %s", name, value, expected);
     } else
         return key;
@@ -130,32 +131,86 @@ int fl_key_section_count(const FlKeySection *section, const char *name)
     return section->n_values[index_of(section, name)];
 }
 
-/* The value of a field; NULL: it goes without saying. To be freed. */
-static char *text_of(const FlTableKey *key, const void *field, const void *usual)
+/* ---- files ----------------------------------------------------------------------------------- */
+
+typedef struct Reader {
+    FlKeySection *section;
+    int n, at; // at: the section at hand; n: another one; -1: above the first
+} Reader;
+
+static bool read_section(void *data, const char *name, int line, GError **error)
 {
-    const uint8_t *rgb = field;
+    Reader *reader = data;
+    g_autofree const char **names = g_new0(const char *, reader->n + 1);
+    for (reader->at = 0; reader->at < reader->n; reader->at++) {
+        names[reader->at] = reader->section[reader->at].name;
+        if (strcmp(name, names[reader->at]) == 0)
+            return true;
+    }
+    const char *meant = fl_suggest(name, names);
+    return !meant || fl_fail(error, reader->section->mistake, "[%s]: expected [%s]", name, meant);
+}
+
+static bool read_key(void *data, const char *name, const char *value, int line, GError **error)
+{
+    const Reader *reader = data;
+    if (reader->at < 0)
+        return fl_fail(error, reader->section->mistake,
+                       "“%s” stands above the first section: expected [%s]", name,
+                       reader->section->name);
+    return reader->at == reader->n ||
+           fl_key_section_set(&reader->section[reader->at], name, value, error);
+}
+
+bool fl_key_sections_read(const char *path, FlKeySection *section, int n, GError **error)
+{
+    Reader reader = {section, n, -1};
+    const FlKeyReader calls = {read_section, read_key, &reader, section->mistake, NULL};
+    return fl_key_file_read(path, &calls, error);
+}
+
+static char *numbers_text(const FlTableKey *key, const void *field, int n, const char *format)
+{
+    GString *text = g_string_new(NULL);
     char number[G_ASCII_DTOSTR_BUF_SIZE];
+    for (int i = 0; i < n; i++) {
+        const double x = key->type == FL_KEY_INTEGER ? (double)((const int *)field)[i]
+                                                     : (double)((const float *)field)[i];
+        g_string_append_printf(text, "%s%s", i ? "," : "",
+                               g_ascii_formatd(number, sizeof number, format, x));
+    }
+    return g_string_free(text, FALSE);
+}
+
+char *fl_table_key_text(const FlTableKey *key, const void *object, int n, const char *format)
+{
+    const void *const field = (const char *)object + key->offset;
+    const uint8_t *rgb = field;
     switch (key->type) {
     case FL_KEY_TEXT:
         return g_strdup(*(const char *const *)field);
     case FL_KEY_COLOUR:
         return g_strdup_printf("#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
     case FL_KEY_NUMBER:
-        if (usual && *(const float *)usual == *(const float *)field)
-            return NULL;
-        return g_strdup(
-            g_ascii_formatd(number, sizeof number, "%.6g", (double)*(const float *)field));
+    case FL_KEY_INTEGER:
+        return numbers_text(key, field, n, format);
+    case FL_KEY_SWITCH:
+        return g_strdup(*(const bool *)field ? "on" : "off");
     case FL_KEY_WORD: {
         g_auto(GStrv) words = g_strsplit(key->words, "|", -1);
-        const int value = *(const int *)field;
-        return usual && *(const int *)usual == value ? NULL
-                                                     : g_strdup(words[value - (int)key->min]);
+        return g_strdup(words[*(const int *)field - (int)key->min]);
     }
-    case FL_KEY_INTEGER:
-    case FL_KEY_SWITCH:
-        break;
     }
     g_assert_not_reached();
+}
+
+/* Returns: true if a field is as it is usually, so that it need not be written. */
+static bool is_usual(const FlTableKey *key, const void *object, const void *usual)
+{
+    const size_t at = key->offset;
+    return (key->type == FL_KEY_TEXT && !*(char *const *)((const char *)object + at)) ||
+           (usual && (key->type == FL_KEY_NUMBER || key->type == FL_KEY_WORD) &&
+            memcmp((const char *)object + at, (const char *)usual + at, sizeof(float)) == 0);
 }
 
 void fl_key_table_write(const FlKeyTable *table, const void *object, const void *usual,
@@ -163,11 +218,9 @@ void fl_key_table_write(const FlKeyTable *table, const void *object, const void 
 {
     for (size_t i = 0; i < table->n; i++) {
         const FlTableKey *key = &table->key[i];
-        g_autofree char *value = key->flag & flags
-                                     ? NULL
-                                     : text_of(key, (const char *)object + key->offset,
-                                               usual ? (const char *)usual + key->offset : NULL);
-        if (value)
-            g_string_append_printf(text, "%s = %s\n", key->name, value);
+        if (key->flag & flags || is_usual(key, object, usual))
+            continue;
+        g_autofree char *value = fl_table_key_text(key, object, 1, "%.6g");
+        g_string_append_printf(text, "%s = %s\n", key->name, value);
     }
 }

@@ -8,9 +8,9 @@
 
 typedef enum FlKeyType {
     FL_KEY_TEXT,    // char *, of the struct
-    FL_KEY_NUMBER,  // float, one or several with spaces or commas between
+    FL_KEY_NUMBER,  // float, one or several with spaces or a comma between
     FL_KEY_INTEGER, // int, likewise
-    FL_KEY_SWITCH,  // bool: on or off
+    FL_KEY_SWITCH,  // bool: on or off, and other words of fl_text_bool()
     FL_KEY_COLOUR,  // uint8_t[3]: #rrggbb
     FL_KEY_WORD,    // an enum
 } FlKeyType;
@@ -37,8 +37,19 @@ typedef struct FlKeyTable {
 
 #define FL_MOST_KEYS 32
 
+/** Reads a value, or several, into the key's field. Returns: how many; -1: the text is no value of
+ * the key, and the field may have changed. */
+int fl_table_key_read(const FlTableKey *key, const char *text, void *object);
+
+/** The values that a key takes, in words, after `text`, which is none. To be freed. */
+char *fl_table_key_expects(const FlTableKey *key, const char *text);
+
+/** The n values of a key's field, numbers in this format of printf(). To be freed. */
+char *fl_table_key_text(const FlTableKey *key, const void *object, int n, const char *format);
+
 /** A section that is read. */
 typedef struct FlKeySection {
+    const char *name;
     const FlKeyTable *table;
     void *object;               // the struct with the fields
     FlError mistake;            // the error code
@@ -51,6 +62,10 @@ const FlTableKey *fl_key_section_set(FlKeySection *section, const char *name, co
 
 /** The number of values that a key of the table has been given; 0: none. */
 int fl_key_section_count(const FlKeySection *section, const char *name);
+
+/** Reads the n sections of a key file; others, such as a tool's own, are left out. Returns: false
+ * with section->mistake or FL_ERROR_INPUT, which names file and line. */
+bool fl_key_sections_read(const char *path, FlKeySection *section, int n, GError **error);
 
 /** Appends "key = value" lines of the texts that are not NULL, and of the words and numbers that
  * differ from those of `usual`, which may be NULL. Keys with one of the flags are left out. Each

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "params/text.h"
+#include "params/key_table.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -14,8 +14,17 @@ enum {
     N_PARAMS
 };
 
-static const size_t offsets[N_PARAMS] = {
-#define FL_PARAM(type, field, ...) offsetof(FlParams, field),
+#define KEY_INT(field) FL_KEY_OF(INTEGER, FlParams, field)
+#define KEY_FLOAT(field) FL_KEY_OF(NUMBER, FlParams, field)
+#define KEY_DIAL(field) FL_KEY_OF(NUMBER, FlParams, field)
+#define KEY_BOOL(field) FL_KEY_OF(SWITCH, FlParams, field)
+#define KEY_LIST(field) FL_KEY_OF(INTEGER, FlParams, field.value)
+
+static const FlTableKey param_keys[N_PARAMS] = {
+#define FL_PARAM(type, field, unit, min, max, ...)                                                 \
+    {#field, KEY_##type(field),                                                                    \
+     min,    max,                                                                                  \
+     1,      FL_PARAM_##type == FL_PARAM_LIST ? FL_LIST_LONGEST : 1},
 #include "params/params.def"
 #undef FL_PARAM
 };
@@ -81,7 +90,7 @@ static const char *const *param_names(void)
 
 size_t fl_param_offset(int index)
 {
-    return offsets[index];
+    return param_keys[index].offset;
 }
 
 int fl_param_find(const char *name)
@@ -93,142 +102,61 @@ int fl_param_find(const char *name)
     return -1;
 }
 
-/** A value of any type, before it is known to fit. */
-typedef union Value {
-    int i;
-    float f;
-    bool b;
-    FlIntList list;
-} Value;
-
-static bool parse_list(const char *text, const FlParamInfo *info, FlIntList *list)
+/* NULL: the parameter is no list. */
+static FlIntList *list_of(FlParams *params, int index)
 {
-    g_auto(GStrv) items = g_strsplit(text, ",", -1);
-    const guint n = g_strv_length(items);
-    if (n < 1 || n > FL_LIST_LONGEST)
-        return false;
-    *list = (FlIntList){.n = (int)n};
-    for (guint i = 0; i < n; i++)
-        if (!fl_text_integer(g_strstrip(items[i]), info->min, info->max, &list->value[i]))
-            return false;
-    return true;
+    char *const field = (char *)params + param_keys[index].offset;
+    return param_keys[index].most > 1 ? (FlIntList *)(void *)(field - offsetof(FlIntList, value))
+                                      : NULL;
 }
 
-static bool parse(const FlParamInfo *info, const char *text, Value *value)
+/* Reads a value; if the text is none, params is unchanged. */
+static bool store(FlParams *params, int index, const char *text)
 {
-    double number = 0;
-    switch (info->type) {
-    case FL_PARAM_INT:
-        return fl_text_integer(text, info->min, info->max, &value->i);
-    case FL_PARAM_FLOAT:
-    case FL_PARAM_DIAL:
-        if (!fl_text_number(text, &number) || number < info->min || number > info->max)
-            return false;
-        value->f = (float)number;
-        return true;
-    case FL_PARAM_BOOL:
-        return fl_text_bool(text, &value->b);
-    case FL_PARAM_LIST:
-        return parse_list(text, info, &value->list);
-    }
-    g_assert_not_reached();
-}
-
-/** "an integer from 0 to 1000 frames", for messages. */
-static char *expectation(const FlParamInfo *info)
-{
-    static const char *const kinds[] = {"an integer", "a number", "on or off",
-                                        "one to eight integers separated by commas, each",
-                                        "a number"};
-    if (info->type == FL_PARAM_BOOL)
-        return g_strdup(kinds[info->type]);
-    return g_strdup_printf("%s from %g to %g%s%s", kinds[info->type], info->min, info->max,
-                           *info->unit ? " " : "", info->unit);
-}
-
-static bool read_value(const char *name, const char *text, int *index, Value *value, GError **error)
-{
-    *index = fl_param_find(name);
-    if (*index < 0) {
-        g_autofree char *hint = fl_did_you_mean(name, param_names());
-        return fl_fail(error, FL_ERROR_USAGE, "unknown parameter “%s”%s", name, hint);
-    }
-    const FlParamInfo *info = fl_param_info(*index);
-    if (!parse(info, text, value)) {
-        g_autofree char *expected = expectation(info);
-        return fl_fail(error, FL_ERROR_USAGE, "%s: “%s” is not %s", info->name, text, expected);
-    }
-    return true;
-}
-
-static void store(FlParams *params, int index, const Value *value)
-{
-    void *const field = (char *)params + offsets[index];
-    switch (infos[index].type) {
-    case FL_PARAM_INT:
-        *(int *)field = value->i;
-        break;
-    case FL_PARAM_FLOAT:
-    case FL_PARAM_DIAL:
-        *(float *)field = value->f;
-        break;
-    case FL_PARAM_BOOL:
-        *(bool *)field = value->b;
-        break;
-    case FL_PARAM_LIST:
-        *(FlIntList *)field = value->list;
-        break;
-    }
+    FlParams trial = *params;
+    FlIntList *list = list_of(&trial, index);
+    if (list)
+        *list = (FlIntList){0};
+    const int n = fl_table_key_read(&param_keys[index], text, &trial);
+    if (list)
+        list->n = n;
+    if (n > 0)
+        *params = trial;
+    return n > 0;
 }
 
 bool fl_params_set(FlParams *params, const char *name, const char *value, GError **error)
 {
-    int index = 0;
-    Value parsed = {0}; // analysers do not see that fl_fail() is false
-    if (!read_value(name, value, &index, &parsed, error))
-        return false;
-    store(params, index, &parsed);
-    return true;
-}
-
-static char *list_text(const FlIntList *list)
-{
-    GString *text = g_string_new(NULL);
-    for (int i = 0; i < list->n; i++)
-        g_string_append_printf(text, "%s%d", i ? "," : "", list->value[i]);
-    return g_string_free(text, FALSE);
+    const int index = fl_param_find(name);
+    if (index < 0) {
+        g_autofree char *hint = fl_did_you_mean(name, param_names());
+        return fl_fail(error, FL_ERROR_USAGE, "unknown parameter “%s”%s", name, hint);
+    }
+    if (store(params, index, value))
+        return true;
+    const FlParamInfo *info = fl_param_info(index);
+    g_autofree char *expected = fl_table_key_expects(&param_keys[index], value);
+    return fl_fail(error, FL_ERROR_USAGE, "%s: “%s” is not %s%s%s", info->name, value, expected,
+                   *info->unit ? " " : "", info->unit);
 }
 
 char *fl_params_get(const FlParams *params, const char *name)
 {
+    FlParams own = *params;
     const int index = fl_param_find(name);
-    if (index < 0)
-        return NULL;
-    const void *const field = (const char *)params + offsets[index];
-    char text[G_ASCII_DTOSTR_BUF_SIZE];
-    switch (infos[index].type) {
-    case FL_PARAM_INT:
-        return g_strdup_printf("%d", *(const int *)field);
-    case FL_PARAM_FLOAT:
-    case FL_PARAM_DIAL: // nine digits give a float back
-        return g_strdup(g_ascii_formatd(text, sizeof text, "%.9g", *(const float *)field));
-    case FL_PARAM_BOOL:
-        return g_strdup(*(const bool *)field ? "on" : "off");
-    case FL_PARAM_LIST:
-        return list_text(field);
-    }
-    g_assert_not_reached();
+    const FlIntList *list = index >= 0 ? list_of(&own, index) : NULL;
+    // nine digits give a float back
+    return index < 0 ? NULL
+                     : fl_table_key_text(&param_keys[index], params, list ? list->n : 1, "%.9g");
 }
 
 static void set_preset(FlParams *params, int preset)
 {
     for (int i = 0; i < N_PARAMS; i++) {
-        Value value;
         const FlParamInfo *info = fl_param_info(i);
-        if (!parse(info, info->preset[preset], &value))
+        if (!store(params, i, info->preset[preset]))
             g_error("params.def: %s: the %s value is out of range", info->name,
                     fl_preset_names[preset]);
-        store(params, i, &value);
     }
 }
 

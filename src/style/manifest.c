@@ -1,9 +1,5 @@
 #include "style/manifest.h"
 
-#include "base/error.h"
-#include "base/suggest.h"
-#include "params/key_file.h"
-
 #include <string.h>
 
 /* A flag says which guess a value replaces. */
@@ -51,48 +47,16 @@ static const FlKeyTable style_table = {style_keys, G_N_ELEMENTS(style_keys)};
 const FlKeyTable fl_front_table = {front_keys, G_N_ELEMENTS(front_keys)};
 const FlKeyTable fl_wash_table = {wash_keys, G_N_ELEMENTS(wash_keys)};
 
-enum { N_SECTIONS = 3 };
-static const char *const names[N_SECTIONS + 1] = {"style", "front", "wash", NULL};
-
-/* The reader's state. */
-typedef struct Reader {
-    FlKeySection section[N_SECTIONS];
-    int place; // index of the section at hand; N_SECTIONS: another one; -1: above the first
-} Reader;
-
-/* A section of another name is a tool's own, such as a recipe's. */
-static bool read_section(void *data, const char *name, int line, GError **error)
-{
-    Reader *reader = data;
-    for (reader->place = 0; reader->place < N_SECTIONS; reader->place++)
-        if (strcmp(name, names[reader->place]) == 0)
-            return true;
-    const char *meant = fl_suggest(name, names);
-    return !meant || fl_fail(error, FL_ERROR_STYLE, "[%s]: expected [%s]", name, meant);
-}
-
-static bool read_key(void *data, const char *name, const char *value, int line, GError **error)
-{
-    Reader *reader = data;
-    FlStyle *style = reader->section[0].object;
-    if (reader->place < 0)
-        return fl_fail(error, FL_ERROR_STYLE,
-                       "“%s” stands above the first section: expected [style]", name);
-    if (reader->place == N_SECTIONS)
-        return true;
-    const FlTableKey *key = fl_key_section_set(&reader->section[reader->place], name, value, error);
-    style->guessed &= ~(key ? key->flag : 0);
-    return key != NULL;
-}
-
 bool fl_manifest_read(FlStyle *style, const char *path, GError **error)
 {
-    Reader reader = {{{&style_table, style, FL_ERROR_STYLE},
-                      {&fl_front_table, &style->front, FL_ERROR_STYLE},
-                      {&fl_wash_table, &style->wash, FL_ERROR_STYLE}},
-                     .place = -1};
-    const FlKeyReader calls = {read_section, read_key, &reader, FL_ERROR_STYLE, NULL};
-    return fl_key_file_read(path, &calls, error);
+    FlKeySection sections[] = {{"style", &style_table, style, FL_ERROR_STYLE},
+                               {"front", &fl_front_table, &style->front, FL_ERROR_STYLE},
+                               {"wash", &fl_wash_table, &style->wash, FL_ERROR_STYLE}};
+    if (!fl_key_sections_read(path, sections, G_N_ELEMENTS(sections), error))
+        return false;
+    for (size_t i = 0; i < G_N_ELEMENTS(style_keys); i++)
+        style->guessed &= ~(sections[0].n_values[i] > 0 ? style_keys[i].flag : 0);
+    return true;
 }
 
 char *fl_manifest_text(const FlStyle *style)

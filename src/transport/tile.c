@@ -1,10 +1,8 @@
 #include "transport/tile.h"
 
 #include "base/alloc.h"
-#include "base/suggest.h"
 #include "io/png.h"
-#include "params/key_file.h"
-#include "params/text.h"
+#include "params/key_table.h"
 #include <math.h>
 #include <string.h>
 
@@ -34,86 +32,24 @@ bool fl_tile_exists(const char *folder)
 /* ---- the section of style.ini ------------------------------------------------------------------
  */
 
-typedef enum KeyType { WORD, COUNT, NUMBER } KeyType;
-
-static const struct Key {
-    const char *name;
-    KeyType type;
-    size_t offset;
-    const char *words; // of a WORD
-    double min, max;
-} keys[] = {
-    {"motion", WORD, offsetof(FlTransportStyle, mode), "gather|stir", 0, 0},
-    {"density", WORD, offsetof(FlTransportStyle, density), "flat|rings", 0, 0},
-    {"size", COUNT, offsetof(FlTransportStyle, size), NULL, 64, 1024},
-    {"match", WORD, offsetof(FlTransportStyle, match), "patches|picture", 0, 0},
-    {"ring", NUMBER, offsetof(FlTransportStyle, ring_px), NULL, 2, 1000},
-    {"taper", NUMBER, offsetof(FlTransportStyle, taper_px), NULL, 1, 1000},
-    {"pace", NUMBER, offsetof(FlTransportStyle, pace), NULL, 0.1, 10},
-    {"effort", NUMBER, offsetof(FlTransportStyle, effort), NULL, 0.1, 100},
+static const FlTableKey keys[] = {
+    {"motion", FL_KEY_OF(WORD, FlTransportStyle, mode), .words = "gather|stir"},
+    {"density", FL_KEY_OF(WORD, FlTransportStyle, density), .words = "flat|rings"},
+    {"size", FL_KEY_OF(INTEGER, FlTransportStyle, size), 64, 1024},
+    {"match", FL_KEY_OF(WORD, FlTransportStyle, match), .words = "patches|picture"},
+    {"ring", FL_KEY_OF(NUMBER, FlTransportStyle, ring_px), 2, 1000},
+    {"taper", FL_KEY_OF(NUMBER, FlTransportStyle, taper_px), 1, 1000},
+    {"pace", FL_KEY_OF(NUMBER, FlTransportStyle, pace), 0.1, 10},
+    {"effort", FL_KEY_OF(NUMBER, FlTransportStyle, effort), 0.1, 100},
 };
-
-typedef struct Reader {
-    FlTransportStyle *style;
-    bool ours; // in the section
-} Reader;
-
-static bool read_section(void *data, const char *name, int line, GError **error)
-{
-    Reader *reader = data;
-    reader->ours = strcmp(name, "transport") == 0;
-    return true;
-}
-
-static bool read_value(void *field, const struct Key *key, const char *value)
-{
-    double number = 0;
-    if (key->type == WORD)
-        return fl_text_choice(value, key->words, field);
-    if (!fl_text_number(value, &number) || number < key->min || number > key->max)
-        return false;
-    if (key->type == NUMBER)
-        *(float *)field = (float)number;
-    else
-        *(int *)field = (int)number;
-    return true;
-}
-
-static bool reject(const struct Key *key, const char *value, GError **error)
-{
-    g_autofree char *range = key->words
-                                 ? g_strdup(key->words)
-                                 : g_strdup_printf("a number from %g to %g", key->min, key->max);
-    g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s = %s: expected %s", key->name, value, range);
-    return false;
-}
-
-static bool read_key(void *data, const char *name, const char *value, int line, GError **error)
-{
-    Reader *reader = data;
-    const char *names[G_N_ELEMENTS(keys) + 1] = {NULL};
-    for (size_t i = 0; i < G_N_ELEMENTS(keys) && reader->ours; i++) {
-        names[i] = keys[i].name;
-        if (strcmp(name, keys[i].name) == 0)
-            return read_value((char *)reader->style + keys[i].offset, &keys[i], value) ||
-                   reject(&keys[i], value, error);
-    }
-    if (!reader->ours)
-        return true;
-    g_autofree char *all = g_strjoinv(", ", (char **)names);
-    g_autofree char *tail = fl_did_you_mean(name, names);
-    g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "unknown key “%s”: expected one of %s%s", name,
-                all, tail);
-    return false;
-}
 
 bool fl_transport_style_read(FlTransportStyle *style, const char *folder, GError **error)
 {
+    static const FlKeyTable table = {keys, G_N_ELEMENTS(keys)};
     g_autofree char *path = g_build_filename(folder, "style.ini", NULL);
+    FlKeySection section = {"transport", &table, style, FL_ERROR_STYLE};
     *style = (FlTransportStyle){.size = 256, .ring_px = 16, .taper_px = 6, .pace = 1, .effort = 1};
-    Reader reader = {style, false};
-    const FlKeyReader calls = {read_section, read_key, &reader, FL_ERROR_STYLE};
-    if (g_file_test(path, G_FILE_TEST_EXISTS) && !fl_key_file_read(path, &calls, error))
+    if (g_file_test(path, G_FILE_TEST_EXISTS) && !fl_key_sections_read(path, &section, 1, error))
         return false;
     style->size -= style->size % FL_POTENTIAL_COARSEST;
     return true;

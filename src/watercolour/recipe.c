@@ -217,7 +217,7 @@ static const struct {
 typedef struct Section {
     FlKeySection keys;
     int line;
-    char *name;
+    char *name; // of keys
 } Section;
 
 typedef struct Reader {
