@@ -102,43 +102,24 @@ static bool discs_init(Discs *discs, const float *distance, const uint8_t *seen,
     return read_seen(discs, seen, n, error);
 }
 
-/** A row of depths, the larger of those above and below, and the least of all three; each goes on
- * by one at both ends. */
-typedef struct Column {
-    int16_t *own, *ends, *least;
-} Column;
-
-static void read_column(const Discs *discs, int y, Column column)
-{
-    const int w = discs->width;
-    const int16_t *row = (const int16_t *)discs->seen + (size_t)y * (size_t)w;
-    const int16_t *up = y > 0 ? row - w : row, *down = y < discs->height - 1 ? row + w : row;
-    int16_t *restrict own = column.own, *restrict ends = column.ends,
-                      *restrict least = column.least;
-    for (int x = 0; x < w; x++) {
-        own[x] = row[x];
-        ends[x] = MAX(up[x], down[x]);
-        least[x] = MIN(row[x], MIN(up[x], down[x]));
-    }
-    own[-1] = own[0], ends[-1] = ends[0], least[-1] = least[0];
-    own[w] = own[w - 1], ends[w] = ends[w - 1], least[w] = least[w - 1];
-}
-
 /**
- * Marks pixels whose disc is not contained in a neighbour's disc. A disc of the largest size counts
- * only if a depth around it is below the cap, which smaller discs always satisfy.
+ * Returns: true if a pixel's disc is not contained in a neighbour's disc. A disc of the largest
+ * size counts only if a depth around it is below the cap, which smaller discs always satisfy.
  */
-static void mark_centres(Column column, int n, int16_t cap, uint8_t *restrict centre)
+static bool is_centre(const Discs *discs, int x, int y)
 {
-    const int16_t *own = column.own, *ends = column.ends, *least = column.least;
-    for (int x = 0; x < n; x++) {
-        const int16_t side = MAX(ends[x], MAX(own[x - 1], own[x + 1]));
-        const int16_t corner = MAX(ends[x - 1], ends[x + 1]);
-        const int16_t low = MIN(least[x], MIN(least[x - 1], least[x + 1]));
-        const int16_t held = (int16_t)(own[x] + STEP_SIDE);
-        const int16_t held_across = (int16_t)(own[x] + STEP_CORNER);
-        centre[x] = (own[x] > 0) & (side < held) & (corner < held_across) & (low < cap);
-    }
+    const int right = discs->width - 1, bottom = discs->height - 1;
+    const int own = discs->seen[(size_t)y * (size_t)discs->width + (size_t)x];
+    int low = own;
+    for (int ny = y - 1; ny <= y + 1 && own > 0; ny++)
+        for (int nx = x - 1; nx <= x + 1; nx++) {
+            const size_t row = (size_t)CLAMP(ny, 0, bottom) * (size_t)discs->width;
+            const int depth = discs->seen[row + (size_t)CLAMP(nx, 0, right)];
+            if (depth >= own + (nx != x && ny != y ? STEP_CORNER : STEP_SIDE))
+                return false;
+            low = MIN(low, depth);
+        }
+    return own > 0 && low < discs->cap;
 }
 
 /** The distance some way from a pixel in one of 16 directions; far outside beyond the plane. */
@@ -186,31 +167,15 @@ static Disc disc_at(const Discs *discs, int x, int y)
     return (Disc){x, (uint16_t)(d * growth + FL_WIDTH_ONE), d};
 }
 
-static void add_centres(Discs *discs, int y, FlColumns columns, const uint8_t *centre)
-{
-    for (int x = columns.first; x < columns.last; x++)
-        if (centre[x]) {
-            const Disc disc = disc_at(discs, x, y);
-            g_array_append_val(discs->centres, disc);
-        }
-}
-
 static void find_centres(Discs *discs)
 {
-    const int w = discs->width;
-    const size_t width = (size_t)discs->width;
-    g_autofree int16_t *rows = g_new0(int16_t, 3 * (width + 2));
-    g_autofree uint8_t *centre = g_new(uint8_t, width);
-    const Column column = {rows + 1, rows + width + 3, rows + 2 * width + 5};
     for (int32_t y = 0; y < discs->height; y++) {
         discs->first[y] = (int32_t)discs->centres->len;
-        if (is_blank(discs->seen + (size_t)y * width, w))
-            continue;
-        read_column(discs, y, column);
-        mark_centres(column, w, (int16_t)discs->cap, centre);
-        for (FlColumns run = fl_next_run(centre, 0, w); run.first < run.last;
-             run = fl_next_run(centre, run.last, w))
-            add_centres(discs, y, run, centre);
+        for (int x = 0; x < discs->width; x++)
+            if (is_centre(discs, x, y)) {
+                const Disc disc = disc_at(discs, x, y);
+                g_array_append_val(discs->centres, disc);
+            }
     }
     discs->first[discs->height] = (int32_t)discs->centres->len;
 }
@@ -284,18 +249,6 @@ static void limit_to(int16_t *restrict row, const int16_t *restrict neighbours, 
     }
 }
 
-/** True if a pixel of a row exceeds the limit that its left or right neighbour sets. */
-static bool is_steep(const int16_t *row, int n)
-{
-    int16_t steep = 0;
-    for (int x = 1; x < n; x++) {
-        const int16_t from_left = allowed(row[x - 1], SLOPE_SIDE);
-        const int16_t from_right = allowed(row[x], SLOPE_SIDE);
-        steep |= (int16_t)((row[x] > from_left) | (row[x - 1] > from_right));
-    }
-    return steep;
-}
-
 /** One pass: from the row before, and along the row in the direction of the pass. */
 static void limit_row(int16_t *row, const int16_t *before, int width, bool forward)
 {
@@ -304,8 +257,6 @@ static void limit_row(int16_t *row, const int16_t *before, int width, bool forwa
         limit_to(row + 1, before, width - 1, SLOPE_CORNER);
         limit_to(row, before + 1, width - 1, SLOPE_CORNER);
     }
-    if (!is_steep(row, width))
-        return;
     for (int k = 1; k < width; k++) {
         const int x = forward ? k : width - 1 - k;
         const int16_t most = allowed(row[forward ? x - 1 : x + 1], SLOPE_SIDE);
@@ -339,81 +290,24 @@ static bool any_narrow(const uint16_t *plane, size_t n, uint16_t cap)
     return narrow;
 }
 
-#define TILE_PX 128 // a tile and what is around it fit into a processor's own cache
-
-/** Room for means over the windows of a tile. */
-typedef struct Means {
-    uint16_t *before; // the whole plane
-    int16_t *plane;   // of the tile and its surroundings, like the sums
-    uint32_t *count, *sum;
-} Means;
-
-static void means_clear(Means *means)
-{
-    free(means->before);
-    free(means->plane);
-    free(means->count);
-    free(means->sum);
-}
-
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Means, means_clear)
-
-/** For n pixels and radii up to r. */
-static bool means_init(Means *means, size_t n, int r, GError **error)
-{
-    const size_t tile = (size_t)(TILE_PX + 2 * r) * (size_t)(TILE_PX + 2 * r);
-    *means = (Means){0};
-    return (means->before = fl_alloc_unset(n, sizeof *means->before, "local widths", error)) &&
-           (means->plane = fl_alloc_unset(tile, sizeof *means->plane, "local widths", error)) &&
-           (means->count = fl_alloc_unset(tile, sizeof *means->count, "local widths", error)) &&
-           (means->sum = fl_alloc_unset(tile, sizeof *means->sum, "local widths", error));
-}
-
-/** True if all pixels inside have the capped width: then their means have the capped width. */
-static bool is_wide(const uint16_t *plane, int width, FlRect rect, uint16_t cap)
-{
-    for (int y = rect.y; y < rect.y + rect.height; y++)
-        if (any_narrow(plane + (size_t)y * (size_t)width + rect.x, (size_t)rect.width, cap))
-            return false;
-    return true;
-}
-
-/** Sums what is inside, and its values. */
-static void sum_tile(Means *means, FlRect page, FlRect around, int r)
-{
-    const FlRect box = {0, 0, around.width, around.height};
-    const size_t n = fl_rect_pixels(box);
-    uint16_t *values = (uint16_t *)means->plane;
-    fl_rect_copy(means->before, page, values, around, sizeof *values);
-    fl_window_sums(means->plane, box, r, means->sum);
-    for (size_t p = 0; p < n; p++)
-        means->plane[p] = means->plane[p] > 0;
-    fl_window_sums(means->plane, box, r, means->count);
-}
-
 /** The mean of what is inside in a square of 2 r + 1 px. */
-static void smooth(uint16_t *plane, int width, int height, int r, uint16_t cap, Means *means)
+static bool smooth(uint16_t *plane, int width, int height, int r, GError **error)
 {
     const FlRect page = {0, 0, width, height};
-    memcpy(means->before, plane, fl_rect_pixels(page) * sizeof *plane);
-    for (int ty = 0; ty < height; ty += TILE_PX)
-        for (int tx = 0; tx < width; tx += TILE_PX) {
-            const FlRect tile = {tx, ty, MIN(TILE_PX, width - tx), MIN(TILE_PX, height - ty)};
-            const FlRect around = fl_rect_grown(tile, r, page);
-            if (is_wide(means->before, width, around, cap)) // as most are, if not bare
-                continue;
-            sum_tile(means, page, around, r);
-            for (int y = tile.y; y < tile.y + tile.height; y++) {
-                uint16_t *row = plane + (size_t)y * (size_t)width;
-                const size_t at = (size_t)(y - around.y) * (size_t)around.width;
-                for (int x = tile.x; x < tile.x + tile.width; x++) {
-                    const size_t p = at + (size_t)(x - around.x);
-                    if (row[x] && means->sum[p] != row[x] * means->count[p])
-                        row[x] =
-                            (uint16_t)((means->sum[p] + means->count[p] / 2) / means->count[p]);
-                }
-            }
-        }
+    const size_t n = fl_rect_pixels(page);
+    g_autofree int16_t *inside = fl_alloc_unset(n, sizeof *inside, "local widths", error);
+    g_autofree uint32_t *sum = fl_alloc_unset(n, sizeof *sum, "local widths", error);
+    g_autofree uint32_t *count = fl_alloc_unset(n, sizeof *count, "local widths", error);
+    if (!inside || !sum || !count)
+        return false;
+    for (size_t p = 0; p < n; p++)
+        inside[p] = plane[p] > 0;
+    fl_window_sums((const int16_t *)plane, page, r, sum); // no half width is larger
+    fl_window_sums(inside, page, r, count);
+    for (size_t p = 0; p < n; p++)
+        if (plane[p])
+            plane[p] = (uint16_t)((sum[p] + count[p] / 2) / count[p]);
+    return true;
 }
 
 /** A pixel outside that has been reached. */
@@ -437,35 +331,13 @@ static void reach_around(int16_t *plane, int width, int height, int x, int y, GA
         }
 }
 
-/** Marks known pixels of a row that have an unknown pixel among their four neighbours in the
- * plane. */
-static void find_contour(const int16_t *row, const int16_t *up, const int16_t *down, int n,
-                         uint8_t *restrict contour)
-{
-    for (int x = 0; x < n; x++)
-        contour[x] = MIN(up[x], down[x]) <= 0;
-    for (int x = 1; x < n; x++)
-        contour[x] |= row[x - 1] <= 0;
-    for (int x = 0; x < n - 1; x++)
-        contour[x] |= row[x + 1] <= 0;
-    for (int x = 0; x < n; x++)
-        contour[x] &= row[x] > 0;
-}
-
-/** Adds the pixels outside next to the shape: all of them are next to a pixel of its contour. */
+/** Adds the pixels outside next to the shape. */
 static void reach_from_shape(int16_t *plane, int width, int height, GArray *reached)
 {
-    g_autofree uint8_t *contour = g_malloc(width);
-    for (int y = 0; y < height; y++) {
-        const int16_t *row = plane + (size_t)y * (size_t)width;
-        const int16_t *up = y > 0 ? row - width : row, *down = y < height - 1 ? row + width : row;
-        find_contour(row, up, down, width, contour);
-        for (FlColumns run = fl_next_run(contour, 0, width); run.first < run.last;
-             run = fl_next_run(contour, run.last, width))
-            for (int x = run.first; x < run.last; x++)
-                if (contour[x])
-                    reach_around(plane, width, height, x, y, reached);
-    }
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            if (plane[(size_t)y * (size_t)width + (size_t)x] > 0)
+                reach_around(plane, width, height, x, y, reached);
 }
 
 static int16_t largest_around(const int16_t *plane, int width, int height, int x, int y)
@@ -512,18 +384,15 @@ bool fl_local_width(const float *distance, const uint8_t *seen, int width, int h
 {
     const size_t n = (size_t)width * (size_t)height;
     const uint16_t cap = fl_width_cap(cap_px);
-    g_auto(Means) means = {0};
     if (!fl_largest_discs(distance, seen, width, height, cap_px, half_width, error))
         return false;
     *narrow = any_narrow(half_width, n, cap);
     if (!*narrow) // as most are: no more is needed
         return true;
-    const int r = MAX(cap / (4 * FL_WIDTH_ONE), 1);
-    if (!means_init(&means, n, r, error))
-        return false;
     limit_slope(half_width, width, height);
-    smooth(half_width, width, height, r, cap, &means);
-    smooth(half_width, width, height, MAX(cap / (8 * FL_WIDTH_ONE), 1), cap, &means);
+    if (!smooth(half_width, width, height, MAX(cap / (4 * FL_WIDTH_ONE), 1), error) ||
+        !smooth(half_width, width, height, MAX(cap / (8 * FL_WIDTH_ONE), 1), error))
+        return false;
     extend(half_width, width, height);
     return true;
 }
