@@ -219,6 +219,8 @@ static void values_become_those_of_svg_1(void)
     assert_value("<style>@property --c{initial-value:#123456;inherits:false}</style>"
                  "<g style='--c:red'><path id='a' style='fill:var(--c)'/></g>",
                  "fill", "#123456");
+    assert_value("<filter><feDiffuseLighting id='a' lighting-color='#ffcc88'/></filter>",
+                 "lighting-color", "rgb(255, 154, 63)");
     assert_value("<g style='font-size:20px'><path id='a' style='stroke-width:calc(.5em)'/></g>",
                  "stroke-width", "10");
 }

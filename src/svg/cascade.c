@@ -553,6 +553,7 @@ static void apply(Cascade *c, xmlNode *node, const Value *v, const Style *style,
     case FL_CSS_ANIMATION:
         break;
     case FL_CSS_TRANSFORM:
+    case FL_CSS_REFERENCE:
     case FL_CSS_RESOLVED:
         fl_css_effects_set(effects, v->name, g_steal_pointer(&value));
         break;

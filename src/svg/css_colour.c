@@ -463,3 +463,13 @@ char *fl_css_colour(const char *text)
         return NULL;
     return *bare == '#' ? g_steal_pointer(&bare) : text_of(&colour);
 }
+
+char *fl_css_colour_in_linear_light(const char *text)
+{
+    Rgba colour;
+    if (!read_colour(text, &colour, 0))
+        return NULL;
+    for (int i = 0; i < 3; i++)
+        colour.c[i] = decode(colour.c[i]);
+    return text_of(&colour);
+}

@@ -18,4 +18,7 @@ char *fl_css_colour(const char *text);
  * no colour. */
 bool fl_css_rgba(const char *text, uint8_t rgba[4]);
 
+/** The same with components of linear light; NULL if it is no colour alone. To be freed. */
+char *fl_css_colour_in_linear_light(const char *text);
+
 #endif

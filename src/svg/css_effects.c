@@ -277,10 +277,10 @@ static const char *apply_mask(const FlCssEffects *effects, xmlNode *node)
 {
     static const char *const plain[] = {"luminance", "match-source", "no-clip", "add", NULL};
     const char *value = fl_css_effects_get(effects, "mask");
-    g_auto(GStrv) part = fl_css_split(value ? value : "", ' ');
-    g_autofree char *declaration = g_strconcat("mask:", part[0] ? part[0] : "none", NULL);
     if (!value)
         return NULL;
+    g_auto(GStrv) part = fl_css_split(value, ' ');
+    g_autofree char *declaration = g_strconcat("mask:", part[0] ? part[0] : "none", NULL);
     fl_declare(node, declaration);
     for (int i = 1; part[0] && part[i]; i++)
         if (!g_strv_contains(plain, part[i]))
@@ -348,17 +348,22 @@ static char *add_filter(xmlNode *node, const char *function, const FlCssUnits *u
 static void apply_filter(const FlCssEffects *effects, xmlNode *node, const FlCssUnits *units,
                          int *n)
 {
-    const char *value = fl_css_effects_get(effects, "filter");
+    g_autofree char *value = value_or_attribute(effects, node, "filter");
+    bool changed = fl_css_effects_get(effects, "filter") != NULL;
+    if (!value && !changed)
+        return;
     g_auto(GStrv) part = fl_css_split(value ? value : "", ' ');
     for (int i = 0; part[i]; i++) {
         char *made = add_filter(node, part[i], units, n);
         if (made)
             g_free(part[i]), part[i] = made;
+        changed |= made != NULL;
     }
+    if (!changed)
+        return;
     g_autofree char *list = g_strjoinv(" ", part);
     g_autofree char *declaration = g_strconcat("filter:", *list ? list : "none", NULL);
-    if (value)
-        fl_declare(node, declaration);
+    fl_declare(node, declaration);
 }
 
 /** The background of the whole page becomes a rectangle below everything. */
@@ -457,6 +462,20 @@ static void apply_path_length(xmlNode *node, const FlCssUnits *units)
         scale_stroke(node, dashes, length / wanted, units);
 }
 
+/** librsvg takes the colour of a filter's light as one of the space in which the filter works. */
+static void apply_light(xmlNode *node)
+{
+    static const char *const lights[] = {"feDiffuseLighting", "feSpecularLighting", NULL};
+    if (!fl_is_one_of(node, lights))
+        return;
+    g_autofree char *space = inherited(node, "color-interpolation-filters");
+    g_autofree char *colour = fl_property(node, "lighting-color");
+    g_autofree char *linear = colour ? fl_css_colour_in_linear_light(colour) : NULL;
+    g_autofree char *declaration = linear ? g_strconcat("lighting-color:", linear, NULL) : NULL;
+    if (declaration && (!space || strcmp(space, "sRGB") != 0))
+        fl_declare(node, declaration);
+}
+
 const char *fl_css_effects_apply(const FlCssEffects *effects, xmlNode *node,
                                  const FlCssUnits *units, int *n_clips)
 {
@@ -470,6 +489,7 @@ const char *fl_css_effects_apply(const FlCssEffects *effects, xmlNode *node,
     const char *mask = apply_mask(effects, node);
     apply_filter(effects, node, units, n_clips);
     apply_path_length(node, units);
+    apply_light(node);
     xmlUnsetProp(node, (const xmlChar *)"transform-origin");
     return problem ? problem : clip ? clip : transform ? transform : mask ? mask : background;
 }

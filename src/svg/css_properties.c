@@ -20,8 +20,9 @@ static const char *const ignored[] = {
     "appearance",
     "aspect-",
     "block-",
+    "border",
     "bottom",
-    "box-sizing",
+    "box-",
     "break-",
     "caret-",
     "color-adjust",
@@ -56,7 +57,7 @@ static const char *const ignored[] = {
     "offset-position",
     "order",
     "orphans",
-    "outline",
+    "outline-",
     "overscroll-",
     "padding",
     "perspective-origin",
@@ -89,9 +90,8 @@ static const char *const ignored[] = {
     "will-change",
     "word-break",
     "word-wrap",
+    "z-index",
     "zoom",
-    "border-collapse",
-    "border-spacing",
     "shape-",
     "text-underline-",
     "text-decoration-",
@@ -163,6 +163,8 @@ bool fl_css_is_valid(const FlCssProperty *property, const char *value)
     switch (property->kind) {
     case FL_CSS_PAINT:
         return colour != NULL;
+    case FL_CSS_ABSENT:
+        return strcmp(value, "0") == 0; // or none
     case FL_CSS_BLEND:
         return !g_str_has_prefix(value, "plus-");
     case FL_CSS_NUMBER:

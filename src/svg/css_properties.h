@@ -10,6 +10,8 @@ typedef enum FlCssKind {
     FL_CSS_LENGTHS,   // a list of such
     FL_CSS_NUMBER,    // a number or percentage
     FL_CSS_BLEND,     // a word, but for those that librsvg does not have
+    FL_CSS_ABSENT,    // only none can be drawn
+    FL_CSS_REFERENCE, // url() and functions, which become those of SVG 1.1
     FL_CSS_TEXT,      // librsvg reads it as a browser does
     FL_CSS_GEOMETRY,  // a length that librsvg knows as an attribute only
     FL_CSS_TRANSFORM, // becomes the attribute `transform`

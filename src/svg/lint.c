@@ -169,19 +169,41 @@ static void check_foreign(const Lint *lint, xmlNode *node)
     xmlSetProp(node, (const xmlChar *)"fill", (const xmlChar *)colour);
 }
 
+/** Returns: true if an attribute has more than one value. */
+static bool is_list(const xmlNode *node, const char *name)
+{
+    g_autoptr(xmlChar) text = fl_attribute(node, name);
+    return text && strpbrk(g_strstrip((char *)text), " ,\t\r\n");
+}
+
 /** Warns of text that librsvg cannot lay out. */
 static void check_text(const Lint *lint, const xmlNode *node)
 {
     g_autoptr(xmlChar) length = fl_attribute(node, "textLength");
+    const bool placed = is_list(node, "x") || is_list(node, "y") || is_list(node, "dx") ||
+                        is_list(node, "dy") || xmlHasProp((xmlNode *)node, (xmlChar *)"rotate");
+    if (placed && (fl_is(node, "text") || fl_is(node, "tspan")))
+        warn(lint, node, "places and turns of single letters are left out");
     if (fl_is(node, "textPath"))
         warn(lint, node, "text on a path is left out");
     if (length)
         warn(lint, node, "textLength is left out: the text has its own width");
 }
 
+/** Warns of a clip path that is itself clipped. */
+static void check_clip(const Lint *lint, const xmlNode *node)
+{
+    const bool inside = node->parent && fl_is(node->parent, "clipPath");
+    g_autofree char *clip =
+        inside || fl_is(node, "clipPath") ? fl_property(node, "clip-path") : NULL;
+    if (clip && strcmp(clip, "none") != 0)
+        warn(lint, node, "the clip of a clip path is left out");
+}
+
 static void lint_node(const Lint *lint, xmlNode *node)
 {
     check_text(lint, node);
+    check_clip(lint, node);
     if (fl_is(node, "foreignObject"))
         check_foreign(lint, node);
     check_references(lint, node);
