@@ -4,8 +4,6 @@
 
 #include <glib.h>
 
-#define BATIK "12"
-
 /** To be freed with g_free(). */
 static inline char *bundled_style(const char *number)
 {

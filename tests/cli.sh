@@ -71,6 +71,7 @@ refuses 'an output without a frame number is refused' 2 'one.png: *' whole -o on
 refuses 'an output of no known kind lists the kinds' 2 'w_%d.bmp: *' whole -o w_%d.bmp $look
 refuses 'an unknown style gets a suggestion' 1 'no style “0l” *did you mean “0?” or “0?” or “0?”?' whole -s 0l
 refuses 'so does one that is called by its name' 1 'no style “blom” *did you mean “Bloom”?' whole -s blom
+refuses 'a style that is gone names the nearest' 1 '*style 12, Batik, does not come with the program any more: take Pools' whole -s batik
 "$program" whole -s BLOOM --dry-run $look >out 2>err
 result $? 'a style is found by its name in any case'
 refuses 'no style asks for one' 2 '*--style*' whole

@@ -69,7 +69,7 @@ config dials 'carry = 0.2@1 1@5' 'w-temp = 5@2 20@6' 'load = 0.2@1 1@6' 'front =
 fate dials dials
 fate held dials --hold 2
 
-other=$(dirname "$style")/styles/13
+other=$(dirname "$style")/styles/14
 config styles "style = $style@1 $other@3~2"
 fate styles styles
 fate styled styles --hold 2

@@ -60,7 +60,7 @@ paint carried "${moved[@]}" && grep -q 'resuming an earlier run' err &&
     same carried carried_whole
 result $? 'paint that is carried goes on as it would have'
 
-ink=(--engine transport --style "$(dirname "$style")/styles/12")
+ink=(--engine transport --style "$(dirname "$style")/styles/14")
 paint ink_whole "${ink[@]}"
 stop ink INT 3 "${ink[@]}"
 paint ink "${ink[@]}" && grep -q 'resuming an earlier run' err && same ink ink_whole

@@ -46,7 +46,7 @@ paint other --seed 2 --layers "other/$layers" && ! same other one
 result $? 'another seed paints something else'
 
 # The transport of ink.
-ink=(--style "$(dirname "$style")/styles/13")
+ink=(--style "$(dirname "$style")/styles/14")
 paint ink -j 1 "${ink[@]}" && paint ink_many -j 4 "${ink[@]}" && same ink_many ink &&
     FLUIDY_CPU_MASK=0 paint ink_plain "${ink[@]}" && same ink_plain ink && ! same ink one
 result $? 'ink is moved alike by four threads and without the larger instruction sets'
@@ -64,11 +64,11 @@ result $? 'a fluid flows alike on any number of threads'
 cp -r "${ink[1]}" fluid && sed -i '/^name =/a fluid = smoke' fluid/style.ini && paint said --style fluid && same said smoke
 result $? 'and a style may ask for it'
 unset film
-batik=(--style "$(dirname "$style")/styles/12")
-paint batik "${batik[@]}"
-fine=("${batik[@]}" --refine 2)
+cp -r "${ink[1]}" patches && sed -i "/^match/d" patches/style.ini
+fine=(--style patches --refine 2)
+paint patches --style patches
 paint fine -j 1 "${fine[@]}" && paint fine_many -j 4 "${fine[@]}" && same fine_many fine &&
-    FLUIDY_CPU_MASK=0 paint fine_plain "${fine[@]}" && same fine_plain fine && ! same fine batik
+    FLUIDY_CPU_MASK=0 paint fine_plain "${fine[@]}" && same fine_plain fine && ! same fine patches
 result $? 'and so does what is refined'
 paint flat "${ink[@]}" --strength 0 && ! same flat ink
 result $? 'without strength it stays where it is'

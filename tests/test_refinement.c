@@ -2,9 +2,11 @@
  */
 #include "bundled_style.h"
 #include "moving_disk.h"
+#include "scratch.h"
 #include "transport/style_ink.h"
 
 #include <string.h>
+#include <unistd.h>
 
 /* The amount at a place between pixels. */
 static double amount_at(const float *amount, double x, double y)
@@ -41,10 +43,25 @@ static double flicker_of(Disk *disk, const Motion *m, int frames)
     return change / n / deviation;
 }
 
-/* A disk with the tile and, if wanted, the patches of the batik. */
-static Disk *batik_new(FlSliced *patches)
+/* The style Smoke, whose ink is to look like its patches instead of its picture, in an empty
+ * folder. */
+static void make_style(const char *folder)
 {
-    g_autofree char *folder = bundled_style(BATIK);
+    static const char *const parts[] = {"frames", "masks", "transport.png"};
+    g_autofree char *bundled = bundled_style("14");
+    for (size_t k = 0; k < G_N_ELEMENTS(parts); k++) {
+        g_autofree char *from = g_build_filename(bundled, parts[k], NULL);
+        g_autofree char *to = g_build_filename(folder, parts[k], NULL);
+        g_assert_cmpint(symlink(from, to), ==, 0);
+    }
+    g_free(
+        scratch_write(folder, "style.ini",
+                      "[style]\nname = Patches\nborder = 8\n[transport]\nsize = 384\ntaper = 7\n"));
+}
+
+/* A disk with the tile of a style and, if wanted, its patches. */
+static Disk *disk_of_style(const char *folder, FlSliced *patches)
+{
     Disk *disk = disk_new(1);
     fl_tile_free(disk->tile);
     disk->tile = fl_tile_load(folder, 1, NULL);
@@ -72,14 +89,15 @@ static void ink_does_not_flicker(void)
         {"turning", 0, 0.0654498f, 1, 0.08f, 0.15f},
         {"at rest", 0, 0, 1, 0, 0},
     };
-    g_autofree char *folder = bundled_style(BATIK);
+    g_autoptr(Scratch) folder = scratch_make();
+    make_style(folder);
     g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
     for (size_t k = 0; k < G_N_ELEMENTS(motions); k++)
         for (int with = 0; with < 2; with++) {
             static const char *const names[] = {"tile", "refined"};
             const Motion *m = &motions[k];
             const float bounds[] = {m->tile, m->refined};
-            Disk *disk = batik_new(with == 1 ? patches : NULL);
+            Disk *disk = disk_of_style(folder, with == 1 ? patches : NULL);
             const double flicker = flicker_of(disk, m, m->turn > 0 ? 24 : 10);
             g_test_message("%s, %s: flicker %.4f", m->name, names[with], flicker);
             g_assert_cmpfloat(flicker, <=, (double)bounds[with]);
@@ -108,11 +126,12 @@ static double loss_of(const Disk *disk, const FlSliced *patches)
 static void refined_ink_looks_like_its_style(void)
 {
     const Motion growing = {.shift = 2.8f, .growth = 1.012f};
-    g_autofree char *folder = bundled_style(BATIK);
+    g_autoptr(Scratch) folder = scratch_make();
+    make_style(folder);
     g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
     double loss[2];
     for (int refined = 0; refined < 2; refined++) {
-        Disk *disk = batik_new(refined ? patches : NULL);
+        Disk *disk = disk_of_style(folder, refined ? patches : NULL);
         (void)flicker_of(disk, &growing, 10);
         loss[refined] = loss_of(disk, patches);
         disk_free(disk);
@@ -126,9 +145,10 @@ static void refined_ink_does_not_decay(void)
 {
     enum { FRAMES = 60 };
     const Motion motions[] = {{.shift = 2, .growth = 1}, {.shift = -2, .growth = 1}};
-    g_autofree char *folder = bundled_style(BATIK);
+    g_autoptr(Scratch) folder = scratch_make();
+    make_style(folder);
     g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
-    Disk *disk = batik_new(patches);
+    Disk *disk = disk_of_style(folder, patches);
     double x = 50, early = 0, late = 0;
     for (int frame = 0; frame < FRAMES; frame++) {
         const Motion *m = &motions[frame / 10 % 2];
@@ -147,9 +167,10 @@ static void refined_ink_does_not_decay(void)
 static void a_refined_state_continues(void)
 {
     const Motion growing = {.shift = 2.3f, .growth = 1.01f}, rest = {.growth = 1};
-    g_autofree char *folder = bundled_style(BATIK);
+    g_autoptr(Scratch) folder = scratch_make();
+    make_style(folder);
     g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
-    Disk *disk = batik_new(patches), *other = batik_new(patches);
+    Disk *disk = disk_of_style(folder, patches), *other = disk_of_style(folder, patches);
     draw_moved(&disk->guides, &rest, 50, 40);
     g_assert_true(fl_carried_ink_amounts(disk->ink, &disk->guides, disk->amount, NULL));
     g_autoptr(GBytes) state = fl_carried_ink_save(disk->ink, NULL);

@@ -154,8 +154,21 @@ static char *other_names(const GPtrArray *entries, const char *word)
                       : g_strdup("");
 }
 
+/* Styles of earlier releases, and what is nearest to each. */
+static const struct Retired {
+    const char *number, *title, *instead;
+} retired[] = {{"12", "Batik", "Pools"}, {"13", "Suminagashi", "Smoke"}};
+
 static void set_not_found(const GPtrArray *entries, const char *name, GError **error)
 {
+    for (size_t i = 0; i < G_N_ELEMENTS(retired); i++)
+        if (fl_edit_distance(name, retired[i].number) == 0 ||
+            fl_edit_distance(name, retired[i].title) == 0) {
+            g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
+                        "style %s, %s, does not come with the program any more: take %s",
+                        retired[i].number, retired[i].title, retired[i].instead);
+            return;
+        }
     g_auto(GStrv) folders = fl_style_folders();
     g_autofree char *where = g_strjoinv(", ", folders);
     g_autofree char *others = other_names(entries, name);
