@@ -69,9 +69,9 @@ static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
     return style->wash *
            (slow[FL_WASH_TONE] +
             1.4f * style->passes * slow[FL_WASH_LINES] *
-                (.10f * load * (.5f + .5f * free) + .24f * ridge * free) +
+                (.16f * load * (.5f + .5f * free) + .3f * ridge * free) +
             1.2f * style->tide *
-                (.36f * tide - .14f * slow[FL_WASH_TIDES] * fl_smooth(slow[FL_WASH_TIDE] / 34)) +
+                (.46f * tide - .2f * slow[FL_WASH_TIDES] * fl_smooth(slow[FL_WASH_TIDE] / 34)) +
             style->blooms * bloom_at(slow));
 }
 
