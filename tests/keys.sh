@@ -34,6 +34,11 @@ keyed wets 'front = 0@1 0@3 2@5' && keyed never 'front = 0' && keyed ever 'front
     same wets/w_0003.png never/w_0003.png && ! same wets/w_0005.png never/w_0005.png &&
     ! same wets/w_0005.png ever/w_0005.png
 result $? 'a front begins at its key'
+keyed runs 'wet-with = all' 'bleed = 0@1 0@3 1@5' && same runs/w_0003.png whole/w_0003.png &&
+    ! same runs/w_0005.png whole/w_0005.png
+result $? 'neighbours that are wet together run into each other from the key on'
+! paint bad -s "$style" --wet-with no-such && says 'wet-with: no region “no-such”'
+result $? 'wet-with names regions'
 paint late -c loaded.conf -f 3-6 && paint later -c load_0.5.conf -f 3-6 && same late/w_0003.png later/w_0003.png
 result $? 'keys stand at the numbers of --frames, wherever a range begins'
 
@@ -65,7 +70,8 @@ fate() {
     result $? "$name: the same from the cache"
 }
 
-config dials 'carry = 0.2@1 1@5' 'w-temp = 5@2 20@6' 'load = 0.2@1 1@6' 'front = 0.2@1 1.5@6' 'granulation = -1@1 1@6'
+config dials 'carry = 0.2@1 1@5' 'w-temp = 5@2 20@6' 'load = 0.2@1 1@6' 'front = 0.2@1 1.5@6' 'wet-with = blue-2255aa' \
+    'granulation = -1@1 1@6'
 fate dials dials
 fate held dials --hold 2
 

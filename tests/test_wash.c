@@ -1,5 +1,6 @@
 /* Washes ride with their figures, are one where shapes of a fill touch, and keep the fill. */
 #include "base/colour_difference.h"
+#include "compose/contacts.h"
 #include "compose/gaps.h"
 #include "compose/ink.h"
 #include "compose/pigments.h"
@@ -546,6 +547,80 @@ static void the_hue_turns_and_the_light_stays(void)
     }
 }
 
+/* Two fields that meet at column 200, wet together: fills and amounts once paint has run. */
+typedef struct Fields {
+    uint8_t fills[4 * W * H];
+    int16_t amounts[W * H];
+} Fields;
+
+static const uint8_t red[3] = {200, 64, 58}, ochre[3] = {232, 178, 58};
+
+static void run_into(Fields *fields, bool right, float strength)
+{
+    static const FlFrontStyle front = FL_FRONT_DEFAULTS;
+    const FlRect box = {right ? 200 : 0, 0, 200, H};
+    const FlArea area = {box, NULL};
+    const size_t n = fl_rect_pixels(box);
+    g_autofree float *planes = g_new(float, 3 * n);
+    g_autofree uint8_t *fills = g_new(uint8_t, 4 * n);
+    g_autofree int16_t *amounts = g_new(int16_t, n);
+    const FlContact contact = {.strength = strength,
+                               .reach_px = 30 * strength,
+                               .style = &front,
+                               .first = right,
+                               .key = 7,
+                               .anchor = {.cosine = 1},
+                               .page = 1,
+                               .box = box,
+                               .step = 1,
+                               .width = 200,
+                               .height = H,
+                               .away = planes,
+                               .foot = {planes + n, planes + 2 * n}};
+    for (size_t i = 0; i < n; i++) {
+        const int x = (int)i % 200, y = (int)i / 200;
+        planes[i] = (float)(right ? x : 199 - x), planes[n + i] = 200, planes[2 * n + i] = (float)y;
+        memcpy(fills + 4 * i, right ? ochre : red, 3);
+        amounts[i] = 1024;
+    }
+    const uint8_t *other = right ? red : ochre;
+    const FlRunning to = {{other[0], other[1], other[2]}, amounts, fills, NULL};
+    fl_contact_lay(&contact, &area, &to);
+    for (int y = 0; y < H; y++) {
+        memcpy(fields->fills + 4 * (y * W + box.x), fills + (size_t)(800 * y), 800);
+        memcpy(fields->amounts + y * W + box.x, amounts + 200 * y, 400);
+    }
+}
+
+/* The share of ochre in a pixel. */
+static float ochre_at(const Fields *fields, int x, int y)
+{
+    return logf((float)fields->fills[4 * (y * W + x) + 1] / (float)red[1]) /
+           logf((float)ochre[1] / (float)red[1]);
+}
+
+static void wet_fields_run_into_each_other(void)
+{
+    g_autofree Fields *fields = g_new0(Fields, 1);
+    int found = 0, of_red = 0, of_ochre = 0;
+    run_into(fields, false, 1);
+    run_into(fields, true, 1);
+    for (int y = 0; y < H; y++) {
+        g_assert_cmpfloat(fabsf(ochre_at(fields, 199, y) - ochre_at(fields, 200, y)), <, .1f);
+        g_assert_cmpfloat(ochre_at(fields, 130, y), ==, 0);
+        g_assert_cmpfloat(ochre_at(fields, 270, y), ==, 1);
+        g_assert_cmpint(fields->amounts[y * W + 130], ==, 1024);
+        const bool left = ochre_at(fields, 195, y) > .15f, right = ochre_at(fields, 204, y) < .85f;
+        found += !left && !right, of_ochre += left && !right, of_red += right && !left;
+    }
+    g_test_message("of %d rows found %d, run over by red %d, by ochre %d", H, found, of_red,
+                   of_ochre);
+    g_assert_cmpint(found, >, H / 20);
+    g_assert_cmpint(found, <, H / 2);
+    g_assert_cmpint(of_red, >, H / 20);
+    g_assert_cmpint(of_ochre, >, H / 20);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -563,6 +638,7 @@ int main(int argc, char **argv)
                     a_calm_wash_keeps_rims_and_some_marks);
     g_test_add_func("/wash/a-heart-is-light", a_heart_is_light);
     g_test_add_func("/wash/threads-and-parts-do-not-matter", threads_and_parts_do_not_matter);
+    g_test_add_func("/contacts/wet-fields-run-into-each-other", wet_fields_run_into_each_other);
     g_test_add_func("/gaps/edges-are-off-by-a-hair", edges_are_off_by_a_hair);
     g_test_add_func("/pigments/they-mix-to-the-fill", pigments_mix_to_the_fill);
     g_test_add_func("/pigments/fills-beyond-paint-become-paint", fills_beyond_paint_become_paint);

@@ -3,6 +3,7 @@
 #define FLUIDY_COMPOSE_COMPOSE_INPUT_H
 
 #include "compose/background.h"
+#include "compose/contacts.h"
 #include "compose/laid.h"
 #include "compose/painted_region.h"
 #include "compose/paper_sheet.h"
@@ -23,16 +24,17 @@ typedef struct FlComposeInput {
     int n_painted;
     const FlPaintedRegion *const *painted;
     const FlBackground *background;
-    const FlPaperSheet *sheet; // of paper; NULL: no sheet
-    FlTooth tooth;             // of the frame, in the size of the drawing
-    uint64_t seed;             // of what is uneven
-    int width, height;         // of the frame, px
-    float paper_px;            // of the frame per px of the sheet of paper
-    bool layers_apart;         // layers are stored as well, to be put on something else
-    bool linear;               // blend in linear light
-    float gap_px;              // as in FlStackParams
-    const FlStainLayer *stain; // NULL: none
-    FlLaid *laid;              // takes the frame's paint as it is laid; NULL: not needed
+    const FlPaperSheet *sheet;  // of paper; NULL: no sheet
+    FlTooth tooth;              // of the frame, in the size of the drawing
+    uint64_t seed;              // of what is uneven
+    int width, height;          // of the frame, px
+    float paper_px;             // of the frame per px of the sheet of paper
+    bool layers_apart;          // layers are stored as well, to be put on something else
+    bool linear;                // blend in linear light
+    float gap_px;               // as in FlStackParams
+    const FlStainLayer *stain;  // NULL: none
+    const FlContacts *contacts; // of regions that are wet together; NULL: there are none
+    FlLaid *laid;               // takes the frame's paint as it is laid; NULL: not needed
 } FlComposeInput;
 
 #endif

@@ -149,27 +149,70 @@ static bool lay_marks(const FlLayer *layer, const FlComposeInput *input,
                         layer->coverage, amounts, error);
 }
 
+/* The fills of a layer's pixels, to be mixed; to be freed with free(). */
+static uint8_t *fills_of(const FlLayer *layer, const FlColouring *colouring, GError **error)
+{
+    const size_t n = fl_rect_pixels(layer->area.box);
+    uint8_t *fills = fl_alloc_unset(4 * n, 1, "a layer", error);
+    for (size_t p = 0; fills && p < n; p++)
+        memcpy(fills + 4 * p, colouring->picture ? colouring->picture + 4 * p : colouring->fill, 3);
+    return fills;
+}
+
+/* Lets the paint of neighbours run into a layer. Returns: true with the fills of its pixels, or
+ * NULL if no neighbour is wet with it. */
+static bool run_together(const FlLayer *layer, const FlLayerSources *sources, int r,
+                         const FlColouring *colouring, int16_t *amounts, uint8_t **fills,
+                         GError **error)
+{
+    const FlComposeInput *input = sources->input;
+    const FlDrawList *draws = sources->cover->draws;
+    const int n = input->contacts ? input->contacts->n : 0;
+    *fills = NULL;
+    for (int k = 0; k < n && colouring->tint != FL_TINT_KEEP; k++) {
+        const FlContact *contact = &input->contacts->contact[k];
+        int other = draws->n - 1;
+        while (other >= 0 && draws->draw[other].region != contact->other)
+            other--;
+        if (contact->region != draws->draw[r].region || other < 0 ||
+            !fl_rect_meet(contact->box, layer->area.box))
+            continue;
+        const FlPaintedRegion *runs = input->painted[input->painted_of[contact->other]];
+        if (!*fills && !(*fills = fills_of(layer, colouring, error)))
+            return false;
+        const FlColouring colour = colouring_of(sources, runs, other);
+        const FlRunning to = {
+            {colour.fill[0], colour.fill[1], colour.fill[2]}, amounts, *fills, layer->knockout};
+        fl_contact_lay(contact, &layer->area, &to);
+    }
+    return true;
+}
+
 /* Colours a layer by its amounts of paint, once wash and the paper's grain are in them; not in
  * paint that keeps the exemplar's own colours. */
 static bool colour_layer(FlLayer *layer, const FlLayerSources *sources, int r,
-                         const FlPaintedRegion *painted, FlColouring *colouring, int16_t *amounts,
-                         GError **error)
+                         const FlPaintedRegion *painted, const FlColouring *colouring,
+                         int16_t *amounts, GError **error)
 {
     const FlRegionSettings *t = painted->settings;
     const FlPaintedPart part = part_of(painted);
     const FlWash *wash = fl_wash_of_draw(sources->washes, r);
     g_autofree int8_t *play = NULL;
+    g_autofree uint8_t *fills = NULL;
     if (wash) {
         if (!(play = fl_alloc_unset(fl_rect_pixels(layer->area.box), 1, "a layer", error)))
             return false;
         fl_wash_lay(wash, whiteness_of(colouring, wash), &layer->area, amounts, play);
     }
+    if (!run_together(layer, sources, r, colouring, amounts, &fills, error))
+        return false;
     if (t->tint != FL_TINT_KEEP && marks_of(painted) <= FL_MARKS_OFF)
         fl_granulate(isnan(t->granulation) ? painted->style->granulation : (float)t->granulation,
                      sources->input->tooth, &layer->area, amounts);
-    colouring->play = play;
-    fl_colourise(painted->style->ink, colouring, &part, amounts, &layer->area, layer->rgba);
-    colouring->play = NULL;
+    FlColouring coloured = *colouring;
+    coloured.play = play;
+    coloured.picture = fills ? fills : colouring->picture;
+    fl_colourise(painted->style->ink, &coloured, &part, amounts, &layer->area, layer->rgba);
     return true;
 }
 

@@ -24,6 +24,14 @@ static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
     return false;
 }
 
+static bool has_region(const FlPlan *plan, const char *name)
+{
+    bool found = false;
+    for (int r = 0; !found && r < fl_drawing_regions(plan->drawing); r++)
+        found = g_str_equal(fl_drawing_region(plan->drawing, r)->name, name);
+    return found;
+}
+
 static bool check_region_names(const FlPlan *plan, GError **error)
 {
     const FlRenderOptions *o = &plan->options;
@@ -31,12 +39,22 @@ static bool check_region_names(const FlPlan *plan, GError **error)
     const size_t n = o->n_settings + g_strv_length(only);
     for (size_t i = 0; i < n; i++) {
         const char *name = i < o->n_settings ? o->settings[i].region : only[i - o->n_settings];
-        bool found = name == NULL;
-        for (int r = 0; !found && r < fl_drawing_regions(plan->drawing); r++)
-            found = g_str_equal(fl_drawing_region(plan->drawing, r)->name, name);
-        if (!found)
+        if (name && !has_region(plan, name))
             return no_such_region(plan, name, error);
     }
+    return true;
+}
+
+/* Checks the neighbours that a region calls wet. */
+static bool check_wet_with(const FlPlan *plan, const FlRegionSettings *settings, GError **error)
+{
+    g_auto(GStrv) names = g_strsplit(settings->wet_with ? settings->wet_with : "", ",", -1);
+    for (char **name = names; *name; name++)
+        if (!g_str_equal(*name, "all") && !has_region(plan, *name)) {
+            no_such_region(plan, *name, error);
+            g_prefix_error(error, "wet-with: ");
+            return false;
+        }
     return true;
 }
 
@@ -131,6 +149,8 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
     chosen->region = region;
     chosen->name = r->name;
     plan->painted_of[region] = plan->n_painted++; // from here on, fl_plan_free() clears it
+    if (!check_wet_with(plan, settings, error))
+        return false;
     if (settings->style)
         return add_styles(plan, region, error);
     return fl_fail(error, FL_ERROR_USAGE,

@@ -179,6 +179,7 @@ static bool set_preset(FlRegionSettings *settings, const char *word, GError **er
     settings->marks = ours ? plain.marks : FL_MARKS_OFF;
     settings->front = ours ? plain.front : 0;
     settings->stain = ours ? plain.stain : 0;
+    settings->bleed = ours ? plain.bleed : 0;
     settings->line = ours ? plain.line : FL_LINE_PLAIN;
     return true;
 }
@@ -294,6 +295,7 @@ void fl_region_settings_clear(FlRegionSettings *settings)
     g_clear_pointer(&settings->style, g_free);
     g_clear_pointer(&settings->tile, g_free);
     g_clear_pointer(&settings->merge_with, g_free);
+    g_clear_pointer(&settings->wet_with, g_free);
     g_clear_pointer(&settings->keyed, g_ptr_array_unref);
 }
 

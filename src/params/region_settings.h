@@ -105,6 +105,8 @@ typedef struct FlRegionSettings {
     double front;       // fronts on the paper ahead of what moves, 0..2
     double stain;       // stains behind the front, 0..1
     double gaps;        // how far edges are off, 0..1
+    char *wet_with;     // names of regions, with commas, into which its paint runs; or NULL
+    double bleed;       // how far, 0..1; NAN: the style's
     FlEdges edges;
     FlLine line;   // of a region that is not painted
     int line_boil; // frames until it is drawn anew; 0: never

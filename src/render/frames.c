@@ -249,7 +249,13 @@ static bool make_frame(FlFrames *frames, int frame, int next, FlComposite *compo
         return false;
     }
     frames->marked = shown;
-    const FlComposeInput input = compose_input(frames, shown);
+    FlComposeInput input = compose_input(frames, shown);
+    g_auto(FlContacts) contacts = {0};
+    input.contacts = &contacts;
+    if (frames->contacts && !fl_contacts_find(&contacts, plan, &input, draws, shown, error)) {
+        fl_draw_list_free(draws);
+        return false;
+    }
     const bool made =
         fl_composite_init(composite, &input, shown, draws, plan->format->takes_16, error) &&
         (!plan->half || frames->small ||
@@ -373,13 +379,15 @@ bool fl_frames_prepare(FlFrames *frames, GError **error)
 {
     FlPainters *painters = &frames->painters;
     const bool wet = fl_wet_wanted(frames->plan);
+    frames->contacts = fl_contacts_wanted(frames->plan);
     fl_painters_recall(painters, frames->plan);
     if (!wet)
         g_clear_pointer(&frames->wet, fl_wet_free);
     if (frames->old_plan)
         drop_styles(frames->plan);
     g_clear_pointer(&frames->old_plan, fl_plan_free);
-    return (frames->plan->rasterised || !(wet || fl_painters_need_masks(painters)) ||
+    return (frames->plan->rasterised ||
+            !(wet || frames->contacts || fl_painters_need_masks(painters)) ||
             fl_plan_rasterise(frames->plan, error)) &&
            fl_frames_tell(frames, "guides", 0, 0, error) && fl_painters_init(painters, error) &&
            (!wet || open_wet(frames, error));

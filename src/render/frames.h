@@ -17,6 +17,7 @@ typedef struct FlFrames {
     FlPainters painters;
     FlWet *wet;                // the wet paper, which paint stains; NULL: paint leaves no stains
     FlMotionSource *motion;    // motion source of `wet`, if the painters have no motion source
+    bool contacts;             // some regions are wet together
     FlReport *report;          // borrowed: inspects each picture; NULL: no report
     bool small;                // frames are as small as they are painted, not enlarged
     bool beside;               // drawing and writing, which wait for the disk, run beside painting

@@ -30,6 +30,7 @@ static const FlTableKey front_keys[] = {
     {"line", FL_KEY_OF(NUMBER, FlFrontStyle, line), 0, 1},
     {"fingers", FL_KEY_OF(NUMBER, FlFrontStyle, fingers), 0, 1},
     {"granulation", FL_KEY_OF(NUMBER, FlFrontStyle, granulation), 0, 1},
+    {"bleed", FL_KEY_OF(NUMBER, FlFrontStyle, bleed), 0, 1},
 };
 
 static const FlTableKey wash_keys[] = {

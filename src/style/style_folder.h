@@ -18,6 +18,7 @@ typedef struct FlFrontStyle {
     float line;        // strength of the pigment line at the tip, 0..1
     float fingers;     // unevenness of the front, 0..1
     float granulation; // settling of pigment in hollows, 0..1
+    float bleed;       // of its paint into a neighbour's, 0..1
 } FlFrontStyle;
 
 #define FL_FRONT_DEFAULTS                                                                          \

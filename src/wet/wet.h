@@ -40,6 +40,14 @@ bool fl_wet_load(FlWet *wet, GBytes *state, GError **error);
 const FlStainLayer *fl_wet_layer(const FlWet *wet);
 FlLaid *fl_wet_laid(FlWet *wet);
 
+/** Says if any two regions of the plan are wet together. */
+bool fl_contacts_wanted(const FlPlan *plan);
+
+/** Finds the contacts of a frame from its masks and those of some frames before; contacts is empty.
+ */
+bool fl_contacts_find(FlContacts *contacts, const FlPlan *plan, const FlComposeInput *input,
+                      const FlDrawList *draws, int frame, GError **error);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlWet, fl_wet_free)
 
 #endif

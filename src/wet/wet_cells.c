@@ -18,15 +18,10 @@ FlRect fl_wet_cells_of(const FlWet *wet, FlRect px)
                            (px.y + px.height + c - 1) / c);
 }
 
-/** Means of the px of each cell. */
-bool fl_wet_get_mask(const FlWet *wet, int region, int frame, FlRect rect, uint8_t *mask,
-                     GError **error)
+void fl_wet_find_means(const FlWet *wet, const uint8_t *full, FlRect rect, uint8_t *mask)
 {
     const FlRect px = fl_wet_px_of(wet, rect);
     const int c = wet->cell;
-    g_autofree uint8_t *full = fl_alloc_unset(fl_rect_pixels(px), 1, "a mask", error);
-    if (!full || !fl_mask_store_get(wet->plan->masks, region, frame, px, full, error))
-        return false;
     g_autofree uint16_t *sums = g_new(uint16_t, px.width + c);
     for (int y = 0; y < rect.height; y++) {
         const int rows = MIN(c, px.height - c * y);
@@ -44,6 +39,17 @@ bool fl_wet_get_mask(const FlWet *wet, int region, int frame, FlRect rect, uint8
                 (uint8_t)(sum / MAX(rows * MIN(c, px.width - c * x), 1));
         }
     }
+}
+
+/** Means of the px of each cell. */
+bool fl_wet_get_mask(const FlWet *wet, int region, int frame, FlRect rect, uint8_t *mask,
+                     GError **error)
+{
+    const FlRect px = fl_wet_px_of(wet, rect);
+    g_autofree uint8_t *full = fl_alloc_unset(fl_rect_pixels(px), 1, "a mask", error);
+    if (!full || !fl_mask_store_get(wet->plan->masks, region, frame, px, full, error))
+        return false;
+    fl_wet_find_means(wet, full, rect, mask);
     return true;
 }
 

@@ -60,6 +60,9 @@ FlRect fl_wet_px_of(const FlWet *wet, FlRect cells);
 /** The cells that a rectangle of px touches. */
 FlRect fl_wet_cells_of(const FlWet *wet, FlRect px);
 
+/** The means of the px of each cell of rect; full: the px of these cells. */
+void fl_wet_find_means(const FlWet *wet, const uint8_t *full, FlRect rect, uint8_t *mask);
+
 /** A region's mask in cells: the means of their px. */
 bool fl_wet_get_mask(const FlWet *wet, int region, int frame, FlRect rect, uint8_t *mask,
                      GError **error);

@@ -1,0 +1,411 @@
+/* The contacts of a frame, from masks alone: those of the frame and of some before it, in which
+ * paint has had time to run. */
+#include "wet/wet.h"
+
+#include "base/alloc.h"
+#include "base/curves.h"
+#include "base/error.h"
+#include "base/rng.h"
+#include "cover/cover_map.h"
+#include "guides/distance.h"
+#include <math.h>
+
+#define STEP_PX 2     // px of the page between points, about
+#define RUN_FRAMES 10 // in which paint runs as far as it gets, and then is dry
+#define REACH_PX 30   // of paint that runs, at most
+#define OF_SIDE .22f  // of the smaller shape, which it reaches at most
+#define CALM_PX 5     // by which a contact is farther away that lasts a third of the time
+#define TOUCH_PX 1.5f // between shapes that touch
+#define BLEED .6f     // of regions that a config calls wet together
+
+/* The two regions of a contact. */
+typedef struct Pair {
+    const FlPlan *plan;
+    const FlCover *cover; // of the frame
+    int frame;
+    const FlRegionPlan *own, *other;
+    FlWet grid;  // its cells alone
+    bool over;   // own lies over the other one
+    float scale; // px of the page per cell
+} Pair;
+
+/* Paint's nearness in a frame, planes of a part of the cells. */
+typedef struct Near {
+    FlRect rect;
+    float *distance; // to what is seen of the other region: below 0 outside, cells
+    float *near;     // 0..1, 1 at the edge
+} Near;
+
+static void near_clear(Near *near)
+{
+    free(near->distance);
+    free(near->near);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Near, near_clear)
+
+/* The place, of a part of the cells, at which the edge is nearest to a cell. */
+static void find_foot(const Near *near, int x, int y, float foot[2])
+{
+    const FlRect rect = near->rect;
+    const float *d = near->distance + (size_t)y * (size_t)rect.width;
+    const float *up = y > 0 ? d - rect.width : d, *down = y + 1 < rect.height ? d + rect.width : d;
+    const float gx = d[MIN(x + 1, rect.width - 1)] - d[MAX(x - 1, 0)], gy = down[x] - up[x];
+    const float far = -d[x] / (sqrtf(gx * gx + gy * gy) + 1e-3f);
+    foot[0] = (float)x + far * gx, foot[1] = (float)y + far * gy;
+}
+
+/* Shapes that do not touch are as far away as they would be if the gap were some times as wide. */
+static void find_near(const Pair *pair, const float *own, Near *near)
+{
+    const FlRect rect = near->rect;
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const size_t i = (size_t)y * (size_t)rect.width + (size_t)x;
+            float foot[2];
+            find_foot(near, x, y, foot);
+            const float gap = -fl_wet_plane_at(own, rect, foot[0], foot[1]) * pair->scale;
+            const float apart = 6 * MAX(gap - TOUCH_PX, 0);
+            near->near[i] = fl_fall((fabsf(near->distance[i]) * pair->scale + apart) / CALM_PX);
+        }
+}
+
+/* The part of the other region that is seen: in the frame itself as all shapes leave it, in earlier
+ * ones as the region does. */
+static bool find_seen(const Pair *pair, int frame, FlRect rect, const uint8_t *own, uint8_t *seen,
+                      GError **error)
+{
+    const FlRect px = fl_wet_px_of(&pair->grid, rect);
+    const size_t n = fl_rect_pixels(rect);
+    if (frame != pair->frame) {
+        const bool read = fl_wet_get_mask(&pair->grid, pair->other->region,
+                                          fl_wet_shown_by(pair->other, frame), rect, seen, error);
+        for (size_t i = 0; read && i < n && pair->over; i++)
+            seen[i] = (uint8_t)MAX(seen[i] - own[i], 0);
+        return read;
+    }
+    g_autofree uint8_t *share = fl_alloc_unset(fl_rect_pixels(px), 1, "a contact", error);
+    if (!share)
+        return false;
+    fl_cover_of_region(pair->cover, pair->other->region, px, share);
+    fl_wet_find_means(&pair->grid, share, rect, seen);
+    return true;
+}
+
+/* Finds how near paint is to the edge in a frame. */
+static bool near_init(const Pair *pair, int frame, FlRect rect, Near *near, GError **error)
+{
+    const size_t n = fl_rect_pixels(rect);
+    g_autofree uint8_t *own = fl_alloc_unset(n, 1, "a contact", error);
+    g_autofree uint8_t *seen = own ? fl_alloc_unset(n, 1, "a contact", error) : NULL;
+    g_autofree float *depth = seen ? fl_alloc_unset(n, sizeof(float), "a contact", error) : NULL;
+    *near = (Near){.rect = rect};
+    if (!depth || !(near->distance = fl_alloc_unset(n, sizeof(float), "a contact", error)) ||
+        !(near->near = fl_alloc_unset(n, sizeof(float), "a contact", error)) ||
+        !fl_wet_get_mask(&pair->grid, pair->own->region, fl_wet_shown_by(pair->own, frame), rect,
+                         own, error) ||
+        !find_seen(pair, frame, rect, own, seen, error) ||
+        !fl_distance(seen, rect.width, rect.height, near->distance, error) ||
+        !fl_distance(own, rect.width, rect.height, depth, error))
+        return false;
+    find_near(pair, depth, near);
+    return true;
+}
+
+/* The place of a cell's middle when an anchor was at rest, and back: px of the frame. */
+static void to_rest(const FlAnchor *at, float x, float y, float rest[2])
+{
+    const float dx = x - at->x, dy = y - at->y;
+    rest[0] = at->rest_x + at->cosine * dx + at->sine * dy;
+    rest[1] = at->rest_y + at->cosine * dy - at->sine * dx;
+}
+
+static void from_rest(const FlAnchor *at, const float rest[2], float *x, float *y)
+{
+    const float dx = rest[0] - at->rest_x, dy = rest[1] - at->rest_y;
+    *x = at->x + at->cosine * dx - at->sine * dy;
+    *y = at->y + at->sine * dx + at->cosine * dy;
+}
+
+/* A cell of the frame where its paint was in an earlier one. */
+static void earlier_cell(const FlAnchor *now, const FlAnchor *then, float cell, float *x, float *y)
+{
+    float rest[2];
+    to_rest(now, (*x + .5f) * cell, (*y + .5f) * cell, rest);
+    from_rest(then, rest, x, y);
+    *x = *x / cell - .5f, *y = *y / cell - .5f;
+}
+
+/* The cells of an earlier frame in which the paint of a part of this frame was. */
+static FlRect earlier_part(const FlAnchor *now, const FlAnchor *then, float cell, FlRect rect,
+                           FlRect page)
+{
+    float low[2] = {1e6f, 1e6f}, high[2] = {-1e6f, -1e6f};
+    for (int k = 0; k < 4; k++) {
+        float x = (float)(rect.x + (k & 1) * rect.width),
+              y = (float)(rect.y + (k >> 1) * rect.height);
+        earlier_cell(now, then, cell, &x, &y);
+        low[0] = MIN(low[0], x), low[1] = MIN(low[1], y);
+        high[0] = MAX(high[0], x), high[1] = MAX(high[1], y);
+    }
+    return fl_rect_grown(
+        fl_rect_touched((double)low[0], (double)low[1], (double)high[0], (double)high[1]), 2, page);
+}
+
+/* The k-th frame before one; below 0: the film begins later. */
+static int frame_before(const FlPlan *plan, int frame, int k)
+{
+    const int n = fl_drawing_frames(plan->drawing);
+    return plan->options.loop ? ((frame - k) % n + n) % n : frame - k;
+}
+
+/* Returns: true if neither region of a pair has moved between two frames. */
+static bool rests(const Pair *pair, int a, int b)
+{
+    const FlRegionPlan *both[] = {pair->own, pair->other};
+    bool same = true;
+    for (int k = 0; k < 2; k++) {
+        const FlAnchor one = fl_drawing_anchor(pair->plan->drawing, both[k]->region, a);
+        const FlAnchor other = fl_drawing_anchor(pair->plan->drawing, both[k]->region, b);
+        same = same && memcmp(&one, &other, sizeof one) == 0 &&
+               fl_mask_store_same(pair->plan->masks, both[k]->region, fl_wet_shown_by(both[k], a),
+                                  fl_wet_shown_by(both[k], b));
+    }
+    return same;
+}
+
+/* Adds how near the paint of a part of a frame was to the edge in an earlier one. */
+static bool add_earlier(const Pair *pair, int frame, int then, FlRect part, float *sum,
+                        GError **error)
+{
+    const FlAnchor now = fl_drawing_anchor(pair->plan->drawing, pair->own->region, frame);
+    const FlAnchor was = fl_drawing_anchor(pair->plan->drawing, pair->own->region, then);
+    const float cell = (float)pair->grid.cell;
+    g_auto(Near) near = {0};
+    const FlRect rect = earlier_part(&now, &was, cell, part, pair->grid.sheet.page);
+    if (rect.width == 0)
+        return true;
+    if (!near_init(pair, then, rect, &near, error))
+        return false;
+    for (int y = 0; y < part.height; y++)
+        for (int x = 0; x < part.width; x++) {
+            float u = (float)(part.x + x), v = (float)(part.y + y);
+            earlier_cell(&now, &was, cell, &u, &v);
+            u -= (float)rect.x, v -= (float)rect.y;
+            if (u >= 0 && v >= 0 && u < (float)rect.width && v < (float)rect.height)
+                sum[y * part.width + x] += fl_wet_plane_at(near.near, rect, u, v);
+        }
+    return true;
+}
+
+/* The mean nearness through the last frames, along the region's own motion. */
+static bool find_mean(const Pair *pair, int frame, FlRect part, float *mean, GError **error)
+{
+    const size_t n = fl_rect_pixels(part);
+    g_autofree float *last = fl_alloc(n, sizeof *last, "a contact", error);
+    if (!last)
+        return false;
+    int frames = 0;
+    for (int k = 0; k < RUN_FRAMES && frame_before(pair->plan, frame, k) >= 0; k++, frames++) {
+        const int then = frame_before(pair->plan, frame, k);
+        if (k == 0 || !rests(pair, then, frame_before(pair->plan, frame, k - 1))) {
+            memset(last, 0, n * sizeof *last);
+            if (!add_earlier(pair, frame, then, part, last, error))
+                return false;
+        }
+        for (size_t i = 0; i < n; i++)
+            mean[i] += last[i];
+    }
+    for (size_t i = 0; i < n; i++)
+        mean[i] /= (float)frames;
+    return true;
+}
+
+/* Finds the place on the edge that is nearest to each point. */
+static void find_feet(const Pair *pair, const Near *near, FlContact *contact)
+{
+    const FlRect rect = near->rect;
+    const float cell = (float)pair->grid.cell;
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const size_t i = (size_t)y * (size_t)rect.width + (size_t)x;
+            float foot[2], place[2];
+            find_foot(near, x, y, foot);
+            to_rest(&contact->anchor, ((float)rect.x + foot[0] + .5f) * cell,
+                    ((float)rect.y + foot[1] + .5f) * cell, place);
+            for (int k = 0; k < 2; k++)
+                contact->foot[k][i] = place[k] * contact->page;
+        }
+}
+
+/* The planes of a contact, whose cells are a part of the page. */
+static bool find_planes(const Pair *pair, int frame, FlRect part, FlContact *contact,
+                        GError **error)
+{
+    const size_t n = fl_rect_pixels(part);
+    g_auto(Near) near = {0};
+    if (!(contact->away = fl_alloc(3 * n, sizeof(float), "a contact", error)))
+        return false;
+    contact->foot[0] = contact->away + n, contact->foot[1] = contact->away + 2 * n;
+    if (!near_init(pair, frame, part, &near, error) ||
+        !find_mean(pair, frame, part, contact->away, error))
+        return false;
+    find_feet(pair, &near, contact);
+    for (size_t i = 0; i < n; i++) {
+        const float lasting = -CALM_PX * logf(MAX(contact->away[i], 1e-6f));
+        contact->away[i] = MAX(lasting, fabsf(near.distance[i]) * pair->scale);
+    }
+    return true;
+}
+
+/* ---- a frame --------------------------------------------------------------------------------- */
+
+static bool names(const FlRegionSettings *settings, const char *region)
+{
+    g_auto(GStrv) list = g_strsplit(settings->wet_with ? settings->wet_with : "", ",", -1);
+    const char *const *words = (const char *const *)list;
+    return g_strv_contains(words, region) || g_strv_contains(words, "all");
+}
+
+/* The bleed of a region, 0..1: as it says, or its style; NAN: neither does. */
+static float bleed_of(const FlRegionPlan *region, double said)
+{
+    const float style = region->style->front.bleed;
+    return !isnan(said) ? (float)said : style > 0 ? style : NAN;
+}
+
+/* The bleed of two regions that are wet together. */
+static float mean_bleed(float a, float b)
+{
+    if (isnan(a) && isnan(b))
+        return BLEED;
+    return isnan(a) ? b : isnan(b) ? a : .5f * (a + b);
+}
+
+/* Returns: true if one of two regions names the other, or the styles of both bleed. */
+static bool are_wet(const FlRegionPlan *a, const FlRegionPlan *b)
+{
+    return names(&a->settings, b->name) || names(&b->settings, a->name) ||
+           (a->style->front.bleed > 0 && b->style->front.bleed > 0);
+}
+
+bool fl_contacts_wanted(const FlPlan *plan)
+{
+    bool wanted = false;
+    for (int p = 0; p < plan->n_painted; p++)
+        for (int q = 0; q < p && !wanted; q++)
+            wanted = are_wet(&plan->painted[p], &plan->painted[q]);
+    return wanted && !fl_plan_is_of_paint(plan);
+}
+
+/* The place in the stack of a region's upper shape; -1: the frame has none. */
+static int place_of(const FlDrawList *draws, int region)
+{
+    int place = draws->n - 1;
+    while (place >= 0 && draws->draw[place].region != region)
+        place--;
+    return place;
+}
+
+/* The regions of a film, and their contacts in a frame so far. */
+typedef struct Finder {
+    const FlPlan *plan;
+    const FlComposeInput *input;
+    const FlCover *cover;
+    int frame;
+    FlContacts *contacts;
+} Finder;
+
+/* The cells in which paint of one region may run into the other. */
+static FlRect part_of(const Finder *f, const Pair *pair, float reach_px)
+{
+    const FlMaskStore *masks = f->plan->masks;
+    const FlRect page = pair->grid.sheet.page;
+    const int room = (int)ceilf(2 * reach_px / pair->scale) + 2;
+    const FlRect own =
+        fl_mask_store_box(masks, pair->own->region, fl_wet_shown_by(pair->own, f->frame));
+    const FlRect other =
+        fl_mask_store_box(masks, pair->other->region, fl_wet_shown_by(pair->other, f->frame));
+    if (own.width == 0 || other.width == 0)
+        return (FlRect){0, 0, 0, 0};
+    return fl_rect_and(fl_rect_grown(fl_wet_cells_of(&pair->grid, own), 2, page),
+                       fl_rect_grown(fl_wet_cells_of(&pair->grid, other), room, page));
+}
+
+static bool add_contact(const Finder *f, const Pair *pair, const FlContact *like, GError **error)
+{
+    const FlRect part = part_of(f, pair, like->reach_px);
+    if (part.width == 0)
+        return true;
+    f->contacts->contact = g_renew(FlContact, f->contacts->contact, f->contacts->n + 1);
+    FlContact *contact = &f->contacts->contact[f->contacts->n++];
+    *contact = *like;
+    contact->region = pair->own->region, contact->other = pair->other->region;
+    contact->style = &pair->other->style->front;
+    contact->first = pair->own->area_px < pair->other->area_px;
+    contact->box = fl_wet_px_of(&pair->grid, part);
+    contact->step = pair->grid.cell;
+    contact->width = part.width, contact->height = part.height;
+    return find_planes(pair, f->frame, part, contact, error);
+}
+
+/* Adds both contacts of a pair. */
+static bool add_pair(const Finder *f, const FlRegionPlan *a, const FlRegionPlan *b, GError **error)
+{
+    const FlPlan *plan = f->plan;
+    const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
+    const int cell = MAX((int)(STEP_PX * plan->paper_px + .5f), 1);
+    const int upper = place_of(f->cover->draws, a->region);
+    const int lower = place_of(f->cover->draws, b->region);
+    const FlRegionSettings *of_a = f->input->painted[a - plan->painted]->settings;
+    const FlRegionSettings *of_b = f->input->painted[b - plan->painted]->settings;
+    if (upper < 0 || lower < 0 || a->region == b->region || !are_wet(a, b))
+        return true;
+    const float bleed = mean_bleed(bleed_of(a, of_a->bleed), bleed_of(b, of_b->bleed));
+    const float side = MIN(fl_drawing_anchor(plan->drawing, a->region, f->frame).side,
+                           fl_drawing_anchor(plan->drawing, b->region, f->frame).side);
+    const int figure = (a->area_px < b->area_px ? a : b)->region;
+    const FlContact like = {
+        .strength = bleed,
+        .anchor = fl_drawing_anchor(plan->drawing, figure, f->frame),
+        .page = 1 / plan->paper_px,
+        .reach_px = bleed * MIN(REACH_PX, OF_SIDE * side / plan->paper_px),
+        .key = fl_key(fl_key(f->input->seed, g_str_hash(a->name)), g_str_hash(b->name))};
+    Pair pair = {
+        .plan = plan,
+        .cover = f->cover,
+        .frame = f->frame,
+        .own = a,
+        .other = b,
+        .grid = {.plan = plan,
+                 .cell = cell,
+                 .sheet.page = {0, 0, (width + cell - 1) / cell, (height + cell - 1) / cell}},
+        .over = upper > lower,
+        .scale = (float)cell / plan->paper_px};
+    if (like.reach_px < .5f)
+        return true;
+    if (!add_contact(f, &pair, &like, error))
+        return false;
+    pair.own = b, pair.other = a, pair.over = !pair.over;
+    return add_contact(f, &pair, &like, error);
+}
+
+/* Returns: true if a region that has styles with keys was listed before. */
+static bool is_later_style(const FlPlan *plan, int p)
+{
+    return p > 0 && plan->painted[p - 1].more;
+}
+
+bool fl_contacts_find(FlContacts *contacts, const FlPlan *plan, const FlComposeInput *input,
+                      const FlDrawList *draws, int frame, GError **error)
+{
+    g_auto(FlCover) cover = {0};
+    const Finder finder = {plan, input, &cover, frame, contacts};
+    bool found = fl_cover_init(&cover, draws, fl_drawing_width(plan->drawing),
+                               fl_drawing_height(plan->drawing), (FlHiding){0}, error);
+    for (int p = 0; p < plan->n_painted && found; p++)
+        for (int q = 0; q < p && found; q++)
+            found = is_later_style(plan, p) || is_later_style(plan, q) ||
+                    add_pair(&finder, &plan->painted[p], &plan->painted[q], error);
+    return found;
+}
