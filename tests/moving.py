@@ -35,6 +35,7 @@ FILMS = {
     "begun before, in reverse": f"<style>@keyframes k {{ to {{ transform: rotate(180deg) }} }} rect {{ animation: k 2s linear -.5s 2 reverse; transform-box: fill-box; transform-origin: center }}</style>" + BOX % "",
     "two animations of one": f"<style>@keyframes a {{ to {{ translate: 40px 0 }} }} @keyframes b {{ to {{ rotate: 45deg }} }} rect {{ animation: a 1s linear infinite, b 2s ease; transform-origin: 25px 20px }}</style>" + BOX % "",
     "outlines of CSS": f"<style>@keyframes k {{ to {{ d: path('M60 60h30v30h-30z') }} }} path {{ animation: k 2s ease-out }}</style><path {BLUE} d='M10 10h30v30h-30z'/>",
+    "ends that no key frame names": f"<style>@keyframes a {{ to {{ offset-distance: 100% }} }} @keyframes b {{ to {{ filter: invert(1) }} }} @keyframes c {{ to {{ transform: rotate(90deg) }} }} @keyframes d {{ 50% {{ --c: #22aa55 }} }} .a {{ offset-path: path('M20 15 L80 15'); animation: a 2s linear }} .b {{ animation: b 2s linear }} .c {{ transform: translate(60px, 60px); animation: c 2s linear; animation-composition: add }} g {{ animation: d 2s linear }} .d {{ fill: var(--c, #2255aa) }}</style><rect class='a' x='-6' y='-4' width='12' height='8' {RED}/><rect class='b' x='10' y='40' width='30' height='30' {RED}/><rect class='c' width='20' height='12' {BLUE}/><g><rect class='d' x='55' y='30' width='30' height='15'/></g>",
     "variables": f"<style>@keyframes k {{ to {{ transform: translateX(var(--far)) }} }} svg {{ --far: 55px }} rect {{ animation: k 2s linear }}</style>" + BOX % "",
 }
 

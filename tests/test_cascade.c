@@ -219,6 +219,9 @@ static void values_become_those_of_svg_1(void)
     assert_value("<style>@property --c{initial-value:#123456;inherits:false}</style>"
                  "<g style='--c:red'><path id='a' style='fill:var(--c)'/></g>",
                  "fill", "#123456");
+    assert_value(
+        "<g color='#ff0000'><path id='a' fill='color-mix(in srgb, currentColor, blue)'/></g>",
+        "fill", "rgb(128, 0, 128)");
     assert_value("<filter><feDiffuseLighting id='a' lighting-color='#ffcc88'/></filter>",
                  "lighting-color", "rgb(255, 154, 63)");
     assert_value("<g style='font-size:20px'><path id='a' style='stroke-width:calc(.5em)'/></g>",
@@ -265,6 +268,8 @@ static void media_ask_about_a_screen(void)
                    {"all", true},
                    {"print", false},
                    {"not print", true},
+                   {"not all and (monochrome)", true},
+                   {"not screen and (color)", false},
                    {"print, screen", true},
                    {"(min-width: 400px)", true},
                    {"(max-width: 399px)", false},

@@ -16,6 +16,7 @@ typedef struct Style {
     GHashTable *variables; // custom properties that are set here, name -> value; may be NULL
     GHashTable *own;       // names of those that children do not inherit; may be NULL
     FlCssUnits units;
+    const char *colour;   // computed, of `color`
     const xmlNode *shows; // by <use>; else NULL
 } Style;
 
@@ -111,6 +112,8 @@ static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d)
         warn(c, name, d->value, "is not a value of that property");
         return;
     }
+    if (strcmp(name, "font") == 0 && strstr(d->value, "small-caps"))
+        warn(c, "font-variant", "small-caps", "cannot be drawn");
     const Value value = {name, property, d->value, d->important};
     for (guint i = 0; i < values->len; i++)
         if (g_array_index(values, Value, i).name == name) {
@@ -309,7 +312,7 @@ static char *compute(Cascade *c, const char *name, const FlCssProperty *property
     const char *keyword = resolve_keyword(property, value);
     if (keyword)
         return g_strdup(keyword);
-    char *colour = property->kind == FL_CSS_PAINT ? fl_css_colour(value) : NULL;
+    char *colour = property->kind == FL_CSS_PAINT ? fl_css_colour_with(value, style->colour) : NULL;
     switch (property->kind) {
     case FL_CSS_PAINT:
         return colour ? colour : g_strdup(value);
@@ -383,9 +386,10 @@ static void take_value(void *data, const char *name, char *text)
 {
     const Animated *a = data;
     Value *value = find_value(a->values, name);
-    const FlCssProperty *property = fl_css_property(name);
+    const bool custom = strncmp(name, "--", 2) == 0;
+    const FlCssProperty *property = custom ? NULL : fl_css_property(name);
     g_ptr_array_add(a->owned, text);
-    if ((value && value->important) || (!property && strncmp(name, "--", 2) != 0))
+    if ((value && value->important) || (!property && !custom))
         return;
     if (value)
         value->text = text;
@@ -395,8 +399,8 @@ static void take_value(void *data, const char *name, char *text)
     }
 }
 
-/** Puts the values of keyframes among those of an element. */
-static void animate(Cascade *c, const xmlNode *node, GArray *values, const Style *style,
+/** Puts the values of keyframes among those of an element. Returns: false if there are none. */
+static bool animate(Cascade *c, const xmlNode *node, GArray *values, const Style *style,
                     GPtrArray *owned)
 {
     g_autoptr(FlCssAnimations) animations = NULL;
@@ -417,6 +421,7 @@ static void animate(Cascade *c, const xmlNode *node, GArray *values, const Style
         fl_css_animations_apply(animations, c->sheet, c->seconds,
                                 &(FlCssContext){&style->units, find_variable, style},
                                 underlying_value, take_value, &animated, c->length);
+    return animations != NULL;
 }
 
 /* ---- what <use> shows ------------------------------------------------------------------------ */
@@ -587,6 +592,22 @@ static void enter_viewport(Style *style, const xmlNode *node)
         fl_css_number((const char *)height, u, u->height, &u->height);
 }
 
+/** The value of `color` that an element sets, to be freed; NULL: it inherits its own. */
+static char *own_colour(Cascade *c, const xmlNode *node, const GArray *values, const Style *style)
+{
+    char *written = fl_property(node, "color");
+    for (guint i = 0; i < values->len; i++) {
+        const Value *v = &g_array_index(values, Value, i);
+        if (v->property && strcmp(v->name, "color") == 0) {
+            g_free(written);
+            written = compute(c, v->name, v->property, v->text, style);
+        }
+    }
+    if (written && (strcmp(written, "inherit") == 0 || strcmp(written, "currentcolor") == 0))
+        g_clear_pointer(&written, g_free);
+    return written;
+}
+
 static void visit(Cascade *c, xmlNode *node, const Style *around)
 {
     const bool root = !node->parent || node->parent->type != XML_ELEMENT_NODE;
@@ -595,11 +616,13 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     g_autoptr(GArray) values = declared_values(c, node, own);
     g_auto(FlCssEffects) effects = {0};
     g_autoptr(GPtrArray) owned = g_ptr_array_new_with_free_func(g_free);
-    Style style = {.around = around, .own = around->own, .units = around->units};
+    Style style = {
+        .around = around, .own = around->own, .units = around->units, .colour = around->colour};
     set_variables(&style, values);
     if (fl_is(node, "svg"))
         enter_viewport(&style, node);
-    animate(c, node, values, &style, owned);
+    if (animate(c, node, values, &style, owned))
+        set_variables(&style, values);
     g_autofree char *font_size = fl_property(node, "font-size");
     for (guint i = 0; i < values->len; i++) {
         const Value *v = &g_array_index(values, Value, i);
@@ -610,6 +633,8 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     }
     if (font_size)
         set_font_size(&style, font_size, root);
+    g_autofree char *colour = own_colour(c, node, values, &style);
+    style.colour = colour ? colour : style.colour;
     GString *text = g_string_new(NULL);
     compute_attributes(c, node, &style);
     for (guint i = 0; i < values->len; i++)
@@ -671,7 +696,7 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
                 GPtrArray *files, FlWarnings *warnings)
 {
     xmlNode *root = xmlDocGetRootElement(doc);
-    Style page = {.units = page_units(root)};
+    Style page = {.units = page_units(root), .colour = "black"};
     const FlCssPage size = {page.units.page_width, page.units.page_height};
     g_autoptr(FlCssSheet) sheet = fl_css_sheet_take(doc, path, number, size, files, warnings);
     g_autoptr(GHashTable) rules = index_rules(fl_css_sheet_rules(sheet));

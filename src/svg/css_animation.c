@@ -219,6 +219,27 @@ static char *between_transforms(const char *property, const char *from, const ch
     return fl_interpolate(a, b, q);
 }
 
+/** A list of filter functions; for "none" those of the other one without effect. To be freed. */
+static char *one_filter(const char *value, const char *other)
+{
+    static const char *const whole[] = {"brightness", "contrast", "opacity", "saturate", NULL};
+    if (strcmp(value, "none") != 0)
+        return g_strdup(value);
+    g_auto(GStrv) part = fl_css_split(other, ' ');
+    for (int i = 0; part[i]; i++) {
+        g_autofree char *name = NULL, *arguments = NULL, *as_it_is = part[i];
+        const bool full = fl_css_call(part[i], &name, &arguments) && g_strv_contains(whole, name);
+        part[i] = one_transform("none", as_it_is, full ? "1" : "0");
+    }
+    return g_strjoinv(" ", part);
+}
+
+static char *between_filters(const char *from, const char *to, double q)
+{
+    g_autofree char *a = one_filter(from, to), *b = one_filter(to, from);
+    return fl_interpolate(a, b, q);
+}
+
 /** A value with its variables put in; to be freed. */
 static char *substituted(const char *value, const FlCssContext *context)
 {
@@ -259,6 +280,8 @@ static char *between(const GArray *frames, const char *property, double p, const
         text = fl_interpolate_transform(from, to, q, context->units);
     else if (strcmp(property, "d") == 0)
         text = between_paths(from, to, q);
+    else if (strcmp(property, "filter") == 0)
+        text = between_filters(from, to, q);
     else if (strcmp(property, "translate") == 0 || strcmp(property, "rotate") == 0 ||
              strcmp(property, "scale") == 0)
         text = between_transforms(property, from, to, q);
@@ -303,11 +326,14 @@ void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet
         g_autoptr(GPtrArray) properties = properties_of(frames);
         for (guint k = 0; k < properties->len; k++) {
             const char *property = properties->pdata[k], *base = underlying(data, property);
-            char *value =
-                between(frames, property, p, longhand(animations, TIMING, i), base, context);
-            if (strcmp(longhand(animations, COMPOSITION, i), "add") == 0 &&
-                strcmp(property, "transform") == 0) {
-                char *sum = g_strconcat(strcmp(base, "none") == 0 ? "" : base, " ", value, NULL);
+            const bool adds = strcmp(longhand(animations, COMPOSITION, i), "add") == 0 &&
+                              strcmp(property, "transform") == 0;
+            char *value = between(frames, property, p, longhand(animations, TIMING, i),
+                                  adds ? "none" : base, context);
+            if (adds) {
+                const bool still = strcmp(value, "none") == 0;
+                char *sum = g_strconcat(strcmp(base, "none") == 0 ? "" : base, " ",
+                                        still ? "" : value, NULL);
                 g_free(value);
                 value = sum;
             }

@@ -464,6 +464,23 @@ char *fl_css_colour(const char *text)
     return *bare == '#' ? g_steal_pointer(&bare) : text_of(&colour);
 }
 
+char *fl_css_colour_with(const char *text, const char *current)
+{
+    static const char word[] = "currentcolor";
+    GString *out = g_string_new(NULL);
+    if (!strchr(text, '(') || !strpbrk(text, "cC"))
+        current = NULL;
+    for (; current && *text; text++)
+        if (g_ascii_strncasecmp(text, word, sizeof word - 1) == 0) {
+            g_string_append(out, current);
+            text += sizeof word - 2;
+        } else
+            g_string_append_c(out, *text);
+    char *colour = fl_css_colour(current ? out->str : text);
+    g_string_free(out, TRUE);
+    return colour;
+}
+
 char *fl_css_colour_in_linear_light(const char *text)
 {
     Rgba colour;

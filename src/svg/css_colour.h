@@ -18,6 +18,9 @@ char *fl_css_colour(const char *text);
  * no colour. */
 bool fl_css_rgba(const char *text, uint8_t rgba[4]);
 
+/** The same where functions may refer to currentColor, which is `current`. */
+char *fl_css_colour_with(const char *text, const char *current);
+
 /** The same with components of linear light; NULL if it is no colour alone. To be freed. */
 char *fl_css_colour_in_linear_light(const char *text);
 

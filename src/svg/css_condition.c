@@ -16,6 +16,8 @@ static bool evaluate(const char *text, Test *test, const void *data, int depth)
     bool value = true, negated = false, or = false, any = false;
     if (depth > 32)
         return false;
+    if (word[0] && word[1] && g_ascii_strcasecmp(word[0], "not") == 0 && *word[1] != '(')
+        return !evaluate(fl_css_space(text) + 3, test, data, depth + 1); // of the whole query
     for (int i = 0; word[i]; i++) {
         const bool first = i == 0;
         if (g_ascii_strcasecmp(word[i], "not") == 0) {

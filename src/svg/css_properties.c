@@ -159,7 +159,8 @@ bool fl_css_is_valid(const FlCssProperty *property, const char *value)
         return false;
     if (strstr(value, "var(") || strstr(value, "env(") || g_strv_contains(keywords, value))
         return true;
-    g_autofree char *colour = property->kind == FL_CSS_PAINT ? fl_css_colour(value) : NULL;
+    g_autofree char *colour =
+        property->kind == FL_CSS_PAINT ? fl_css_colour_with(value, "black") : NULL;
     switch (property->kind) {
     case FL_CSS_PAINT:
         return colour != NULL;
