@@ -192,6 +192,26 @@ static void drafts_loops_and_holds_are_as_written(void)
     g_assert_cmpmem(again, 4 * WIDTH * HEIGHT, plain, 4 * WIDTH * HEIGHT);
 }
 
+/* Wet paper keeps what another choice does not touch, and nothing else. */
+static void stains_are_those_of_the_choice(void)
+{
+    const char *const choices[][2] = {
+        {"tint", "#11aa55"}, {"stain", "0"}, {"paper-seed", "7"}, {"stain-time", "2"}};
+    g_autoptr(Case) test = case_new();
+    g_autofree uint8_t *plain = frame_of(test->film, 4);
+    for (size_t k = 0; k < G_N_ELEMENTS(choices); k++) {
+        g_autoptr(Case) other = case_new();
+        set(other->film, NULL, choices[k][0], choices[k][1]);
+        set(test->film, NULL, choices[k][0], choices[k][1]);
+        g_autofree uint8_t *now = frame_of(test->film, 4), *alone = frame_of(other->film, 4);
+        g_assert_cmpmem(now, 4 * WIDTH * HEIGHT, alone, 4 * WIDTH * HEIGHT);
+        g_assert_true(memcmp(now, plain, 4 * WIDTH * HEIGHT) != 0);
+        set(test->film, NULL, choices[k][0], NULL);
+        g_autofree uint8_t *again = frame_of(test->film, 4);
+        g_assert_cmpmem(again, 4 * WIDTH * HEIGHT, plain, 4 * WIDTH * HEIGHT);
+    }
+}
+
 static void *frames_in_thread(void *data)
 {
     Case *test = data;
@@ -322,11 +342,11 @@ static bool count_down(void *data)
     return g_atomic_int_dec_and_test((int *)data);
 }
 
-/* Two regions ask once each before they are painted, and then within. */
+/* Two regions ask once each before their guides, once before their paint, and then within. */
 static void a_frame_can_be_stopped_within(void)
 {
     g_autoptr(Case) test = case_new(), other = case_new();
-    for (int stop = 1; stop < 5; stop++) {
+    for (int stop = 1; stop < 7; stop++) {
         g_autoptr(GError) error = NULL;
         int left = stop;
         const FlFilmCalls calls = {.size = sizeof calls, .stopped = count_down, .data = &left};
@@ -406,6 +426,7 @@ int main(int argc, char **argv)
     TEST(another_style_paints_its_region_alone);
     TEST(what_is_kept_is_bounded);
     TEST(drafts_loops_and_holds_are_as_written);
+    TEST(stains_are_those_of_the_choice);
     TEST(two_films_in_two_threads);
     TEST(drafts_come_at_once_and_leave_frames_alone);
     TEST(a_config_of_text_reads_no_drawing_anew);

@@ -217,7 +217,8 @@ static void ask(FlFilm *film, Take *take)
 
 /* ---- frames ---------------------------------------------------------------------------------- */
 
-/* A take that fails keeps its drawing, its styles and the stored paint for the next options. */
+/* A take that fails keeps its drawing, its styles, its guides and the stored paint for the next
+ * options. */
 static bool follow_options(FlFilm *film, Take *take, GError **error)
 {
     const size_t memory = (size_t)MIN(fl_limit(FL_LIMIT_MEMORY) / 8, 512) << 20;
@@ -239,8 +240,13 @@ static bool follow_options(FlFilm *film, Take *take, GError **error)
     film->stats.n_read += plan->drawing != read;
     if (fl_frames_check(&take->frames, error) && fl_frames_prepare(&take->frames, error))
         return true;
-    take->n_painted += fl_painters_painted(&take->frames.painters);
-    fl_painters_clear(&take->frames.painters);
+    FlPainters *painters = &take->frames.painters;
+    if (painters->shapes.masks == plan->masks)
+        fl_painters_forget(painters);
+    else {
+        take->n_painted += fl_painters_painted(painters);
+        fl_painters_clear(painters);
+    }
     g_clear_pointer(&take->frames.old_plan, fl_plan_free);
     return false;
 }

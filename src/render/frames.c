@@ -156,6 +156,7 @@ static bool draw_shapes(void *data, GError **error)
 
 static void start_drawing(FlFrames *frames, int frame)
 {
+    g_clear_pointer(&frames->draws, g_bytes_unref); // of a frame that was stopped
     frames->drawn = frame;
     fl_task_start(&frames->drawing, draw_shapes, frames, frames->beside);
 }
@@ -233,7 +234,8 @@ static bool make_frame(FlFrames *frames, int frame, int next, FlComposite *compo
     const bool painted = paint(frames, shown, error);
     *paint_s = seconds_since(start);
     trim(plan); // painting and composing cannot use each other's freed memory
-    if (!fl_task_wait(&frames->drawing, painted ? error : NULL) || !painted)
+    if (!fl_task_wait(&frames->drawing, painted ? error : NULL) || !painted ||
+        fl_stop_asked(&frames->painters.shapes.stop, error))
         return false;
     if (!composed)
         return true;

@@ -30,7 +30,8 @@ static bool check_memory(const FlPainters *painters, GError **error)
 static bool make_guides_of(void *data, int p, int thread, GError **error)
 {
     FlPainters *painters = data;
-    return !painters->fresh[p] || fl_painter_prepare(painters->painter[p], error);
+    return !painters->fresh[p] || (!fl_stop_asked(&painters->shapes.stop, error) &&
+                                   fl_painter_prepare(painters->painter[p], error));
 }
 
 /* While it is painted, a region takes 80 bytes a pixel of its rectangle, and about as many while
@@ -249,6 +250,13 @@ bool fl_painters_init(FlPainters *painters, GError **error)
         if (painters->painter[p]->paint && plan->painted[p].engine->measure)
             plan->painted[p].engine->measure(painters->painter[p]->paint, energies);
     return true;
+}
+
+void fl_painters_forget(FlPainters *painters)
+{
+    for (int p = 0; p < painters->n; p++)
+        if (painters->fresh[p])
+            painters->painter[p]->reuse.method = (FlDigest){0};
 }
 
 void fl_painters_clear(FlPainters *painters)

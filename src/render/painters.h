@@ -40,6 +40,10 @@ void fl_painters_finish(FlPainters *painters);
  * are rasterised, if they are needed. FL_ERROR_LIMIT, FL_ERROR_NO_MEMORY, or an error about a file.
  */
 bool fl_painters_init(FlPainters *painters, GError **error);
+
+/** After a failure of that: what was to be made is made by the next plan, which has the others, and
+ * the guides that are whole. */
+void fl_painters_forget(FlPainters *painters);
 void fl_painters_clear(FlPainters *painters);
 
 /** Does the work for every painter: fl_schedule_run(). */

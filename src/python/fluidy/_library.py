@@ -1,4 +1,6 @@
 """The library's declarations, and its errors as exceptions. Private to the package."""
+import os
+
 from cffi import FFI
 
 DECLARATIONS = """
@@ -108,6 +110,8 @@ typedef struct FlRegionPaint {
 } FlRegionPaint;
 bool fl_paint_region(const FlRegionPaint *region, GError **error);
 """
+
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # threads that wait for others take no time from them
 
 ffi = FFI()
 ffi.cdef(DECLARATIONS)
