@@ -58,6 +58,10 @@ static inline const FlWash *fl_wash_of_draw(const FlWashes *washes, int draw)
 /** The strengths of the wash of a painted region: those of its settings, else its style's. */
 FlWashStyle fl_wash_style_of(const FlPaintedRegion *painted);
 
+/** The ln of the factor on amounts and the balance of the pigments at each point of a wash of
+ * strength 1. */
+void fl_wash_find_tones(const FlWash *wash, float *tones, float *hues);
+
 #define FL_PLAY_ONE 64 // of the balance of two pigments
 
 /**

@@ -46,9 +46,10 @@ void fl_field_clear(FlWashField *field);
 /** Blurs a plane of all points by sigma_px of the page. */
 void fl_field_blur(const FlWashField *field, float *plane, float sigma_px);
 
-/** Takes the mean over what the shape holds around each point away, as it is where breadth weakens
- * the plane, so that the fill stays the fill. Shapes apart have means of their own. */
-void fl_field_centre(const FlWashField *field, const float *breadth, float *plane);
+/** Takes from a plane so many shares at each point that the mean of `all`, of which it is a part,
+ * is 0 over what the shape holds around each point, and the fill stays the fill. Shapes apart have
+ * means of their own. */
+void fl_field_centre(const FlWashField *field, const float *all, const float *share, float *plane);
 
 /** The masks of the draws of wash w, and of its regions as far as the others leave them in sight.
  */

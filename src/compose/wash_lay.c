@@ -53,8 +53,8 @@ static inline float bloom_at(const Slow slow)
                     : found * (.30f * fl_decay(-away / 6) - .45f * fl_smooth(-away / 30));
 }
 
-/* The ln of the factor on the amount, and the balance of the pigments, at a pixel. Lines meet and
- * never cross: passes end at drying lines. */
+/* The ln of the factor on the amount by a wash of strength 1, and the balance of the pigments, at a
+ * pixel. Lines meet and never cross: passes end at drying lines. */
 static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
 {
     const FlWashStyle *style = &brush->wash->style;
@@ -66,13 +66,24 @@ static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
     const float ridge = crisp * fl_decay((1 - part) * brush->wash->brush_px / 7) * .7f;
     const float tide = tide_at(slow), free = 1 - fl_smooth(2.2f * tide);
     *hue = slow[FL_WASH_HUE] + slow[FL_WASH_LINES] * .25f * load + .3f * tide;
-    return style->wash *
-           (slow[FL_WASH_TONE] +
-            1.4f * style->passes * slow[FL_WASH_LINES] *
-                (.16f * load * (.5f + .5f * free) + .3f * ridge * free) +
-            1.2f * style->tide *
-                (.46f * tide - .2f * slow[FL_WASH_TIDES] * fl_smooth(slow[FL_WASH_TIDE] / 34)) +
-            style->blooms * bloom_at(slow));
+    return slow[FL_WASH_TONE] +
+           1.4f * style->passes * slow[FL_WASH_LINES] *
+               (.16f * load * (.5f + .5f * free) + .3f * ridge * free) +
+           1.2f * style->tide *
+               (.46f * tide - .2f * slow[FL_WASH_TIDES] * fl_smooth(slow[FL_WASH_TIDE] / 34)) +
+           style->blooms * bloom_at(slow);
+}
+
+void fl_wash_find_tones(const FlWash *wash, float *tones, float *hues)
+{
+    Brush brush;
+    brush_init(&brush, wash, 0);
+    for (int i = 0; i < wash->width * wash->height; i++) {
+        Slow slow;
+        for (int k = 0; k < FL_WASH_PLANES; k++)
+            slow[k] = wash->plane[k][i];
+        tones[i] = tone_at(&brush, slow, &hues[i]);
+    }
 }
 
 /* calm: 1 for the amount that is the fill, 0 for that of the recording. */
@@ -109,7 +120,7 @@ static void lay_row(const Brush *brush, const FlArea *area, int y, int16_t *amou
         for (; x < end; x++) {
             if (amounts[x] >= 0) {
                 float hue;
-                const float tone = tone_at(brush, slow, &hue);
+                const float tone = wash->style.wash * tone_at(brush, slow, &hue);
                 const float side =
                     wash->style.wash * slow[FL_WASH_TONE]; // lines look like dirt in white
                 const float shade = fl_smooth((3.5f * side + .15f) / 1.5f);

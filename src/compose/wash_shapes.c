@@ -121,29 +121,27 @@ static void spread(const FlWashField *field, float *plane, float sigma_px)
     }
 }
 
-/* The weighted mean of a plane over what a shape holds around each point; around: the weights,
- * spread alike. */
-static void mean_inside(const FlWashField *field, float *plane, const float *weight, float sigma_px,
-                        const float *around)
+/* The mean of a plane over what a shape holds around each point; around: the mask, spread alike. */
+static void mean_inside(const FlWashField *field, float *plane, float sigma_px, const float *around)
 {
     const size_t n = fl_wash_points(field->wash);
     for (size_t i = 0; i < n; i++)
-        plane[i] *= weight[i];
+        plane[i] *= field->mask[i];
     spread(field, plane, sigma_px);
     for (size_t i = 0; i < n; i++)
         plane[i] /= MAX(around[i], 1e-12f);
 }
 
-void fl_field_centre(const FlWashField *field, const float *breadth, float *plane)
+void fl_field_centre(const FlWashField *field, const float *all, const float *share, float *plane)
 {
     const size_t n = fl_wash_points(field->wash);
-    float *mean = field->room[0], *weight = field->room[1], *around = field->around;
+    float *mean = field->room[0], *around = field->around;
     for (size_t i = 0; i < n; i++)
-        mean[i] = plane[i], around[i] = weight[i] = field->mask[i] * breadth[i];
-    spread(field, around, field->size);
-    mean_inside(field, mean, weight, field->size, around);
+        mean[i] = all[i], around[i] = field->mask[i] * share[i];
+    spread(field, around, 4 * field->size);
+    mean_inside(field, mean, 4 * field->size, around);
     for (size_t i = 0; i < n; i++)
-        plane[i] -= mean[i];
+        plane[i] -= share[i] * mean[i];
 }
 
 /* Adds the coverage of a draw in the square of a step around each point to a plane, 0..1. */
@@ -228,8 +226,8 @@ void fl_field_find_side(const FlWashField *field)
     }
     memcpy(field->around, field->mask, n * sizeof *mean);
     spread(field, field->around, field->size);
-    mean_inside(field, mean, field->mask, field->size, field->around);
-    mean_inside(field, square, field->mask, field->size, field->around);
+    mean_inside(field, mean, field->size, field->around);
+    mean_inside(field, square, field->size, field->around);
     for (size_t i = 0; i < n; i++) {
         const float spread = sqrtf(MAX(square[i] - mean[i] * mean[i], 0));
         along[i] = fl_clamp((along[i] - mean[i]) / (1.9f * spread + 2), -1.4f, 1.4f);
@@ -298,7 +296,7 @@ void fl_field_find_breadth(const FlWashField *field, float *breadth)
     fl_field_blur(field, breadth, 16);
     memcpy(field->room[0], field->mask, n * sizeof *breadth);
     spread(field, field->room[0], 16);
-    mean_inside(field, breadth, field->mask, 16, field->room[0]);
+    mean_inside(field, breadth, 16, field->room[0]);
     for (size_t i = 0; i < n; i++)
         breadth[i] = fl_smooth((breadth[i] - .2f) / .35f);
 }

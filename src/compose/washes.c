@@ -13,6 +13,7 @@ static void put_together(const FlWashField *field)
 {
     const FlWash *wash = field->wash;
     float *breadth = field->room[3], *pool = field->room[2], *heart = field->room[4];
+    float *tones = field->room[2], *hues = field->room[1], *share_of_hue = field->room[4];
     float *tone = wash->plane[FL_WASH_TONE], *hue = wash->plane[FL_WASH_HUE];
     const size_t n = fl_wash_points(wash);
     const float quiet = 1 - .45f * fl_smooth(field->size / 300 - 1); // a ground is laid with care
@@ -28,17 +29,20 @@ static void put_together(const FlWashField *field)
                   wash->style.heart * heart[i] * (.55f + .2f * slow);
         hue[i] = 1.25f * hue[i] + .45f * field->side[i];
     }
-    fl_field_centre(field, breadth, tone);
-    fl_field_centre(field, breadth, hue);
     for (size_t i = 0; i < n; i++) {
-        const float lines = quiet * breadth[i] * wash->plane[FL_WASH_LINES][i];
-        tone[i] *= quiet * breadth[i];
-        hue[i] *= .3f + .7f * quiet * breadth[i];
+        breadth[i] *= quiet;
+        const float lines = breadth[i] * wash->plane[FL_WASH_LINES][i];
+        tone[i] *= breadth[i];
+        share_of_hue[i] = .3f + .7f * breadth[i];
+        hue[i] *= share_of_hue[i];
         wash->plane[FL_WASH_LINES][i] = lines;
         wash->plane[FL_WASH_TIDES][i] *= lines;
         wash->plane[FL_WASH_BLOOMS][i] *= lines;
         wash->plane[FL_WASH_CALM][i] *= calm * (1 - wash->plane[FL_WASH_CRISP][i]);
     }
+    fl_wash_find_tones(wash, tones, hues);
+    fl_field_centre(field, tones, breadth, tone);
+    fl_field_centre(field, hues, share_of_hue, hue);
 }
 
 /* The fill of a region through the film, by which shapes are one wash; NULL: it has none. */
