@@ -1,7 +1,7 @@
 #include "base/build_id.h"
 
 #include "config.h"
-#include <glib.h>
+#include <fluidy/fluidy.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
@@ -62,6 +62,11 @@ static void append_build(GString *text)
     (void)text;
 }
 #endif
+
+const char *fl_version(void)
+{
+    return FL_VERSION;
+}
 
 const char *fl_build_id(void)
 {

@@ -17,6 +17,17 @@ bool fl_fail(GError **error, FlError code, const char *format, ...)
     return false;
 }
 
+bool fl_exists_error(GError **error, const char *path)
+{
+    return fl_fail(error, FL_ERROR_EXISTS, "%s: already exists; use ‘overwrite’ to replace it",
+                   path);
+}
+
+bool fl_check_not_exists(const char *path, GError **error)
+{
+    return !g_file_test(path, G_FILE_TEST_EXISTS) || fl_exists_error(error, path);
+}
+
 void fl_tell(void (*to)(const char *message, void *data), void *data, const char *format, ...)
 {
     va_list arguments;

@@ -8,6 +8,12 @@
 /** Sets an error of FL_ERROR. Returns: false. */
 bool fl_fail(GError **error, FlError code, const char *format, ...) G_GNUC_PRINTF(3, 4);
 
+/** Sets FL_ERROR_EXISTS about a file that must not be replaced. Returns: false. */
+bool fl_exists_error(GError **error, const char *path);
+
+/** Returns: true if there is no such file; else false with FL_ERROR_EXISTS set. */
+bool fl_check_not_exists(const char *path, GError **error);
+
 /** Asks a caller to stop, from any thread; `asked` may be NULL. */
 typedef struct FlStop {
     bool (*asked)(void *data);

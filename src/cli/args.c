@@ -121,19 +121,25 @@ static gboolean read_methods(const char *name, const char *value, gpointer data,
     return read_names(name, value, args, "fluidymation,lazyfluids,default", error);
 }
 
+/* One of the option's words. */
+static bool read_word(const char *name, const char *value, int *choice, GError **error)
+{
+    const FlOption *option = option_named(name);
+    if (fl_text_choice(value, option->value, choice))
+        return true;
+    fl_option_reject(option, value, error);
+    g_prefix_error(error, "%s: ", name);
+    return false;
+}
+
 static gboolean read_plan(const char *name, const char *value, gpointer data, GError **error)
 {
     FlArgs *args = data;
-    const FlOption *option = option_named(name);
     int farm = FL_FARM_JSON;
-    if (!fl_text_choice(value, option->value, &farm)) {
-        fl_option_reject(option, value, error);
-        g_prefix_error(error, "%s: ", name);
-        return FALSE;
-    }
+    const bool known = read_word(name, value, &farm, error);
     args->farm = farm;
     args->task = FL_COMMAND_PLAN;
-    return TRUE;
+    return known;
 }
 
 static gboolean read_serve(const char *name, const char *value, gpointer data, GError **error)
@@ -155,15 +161,10 @@ static gboolean read_serve(const char *name, const char *value, gpointer data, G
 
 static gboolean read_progress(const char *name, const char *value, gpointer data, GError **error)
 {
-    const FlOption *option = option_named(name);
     int mode = FL_PROGRESS_AUTO;
-    if (!fl_text_choice(value, option->value, &mode)) {
-        fl_option_reject(option, value, error);
-        g_prefix_error(error, "%s: ", name);
-        return FALSE;
-    }
+    const bool known = read_word(name, value, &mode, error);
     ((FlArgs *)data)->progress = mode;
-    return TRUE;
+    return known;
 }
 
 static gboolean read_quiet(const char *name, const char *value, gpointer data, GError **error)

@@ -1,6 +1,8 @@
 #include "inspect/page_script.h"
 
+#include "base/json.h"
 #include "io/png.h"
+#include "params/program.h"
 #include <gio/gio.h>
 #include <math.h>
 #include <string.h>
@@ -27,23 +29,36 @@ GBytes *fl_page_part(FlPagePart part)
                                 : g_bytes_new_from_bytes(page, rest, n - rest);
 }
 
+static void append(GByteArray *page, GBytes *part)
+{
+    gsize n = 0;
+    const guint8 *data = g_bytes_get_data(part, &n);
+    g_byte_array_append(page, data, (guint)n);
+    g_bytes_unref(part);
+}
+
+GBytes *fl_live_page(void)
+{
+    GByteArray *page = g_byte_array_new();
+    append(page, fl_page_part(FL_PAGE_HEAD));
+    append(page, fl_page_file("live.html"));
+    append(page, fl_page_part(FL_PAGE_REST));
+    return g_byte_array_free_to_bytes(page);
+}
+
 void fl_script_string(FILE *out, const char *text)
 {
-    if (!text) {
-        fputs("null", out);
-        return;
-    }
-    g_autofree char *valid = g_utf8_make_valid(text, -1);
-    fputc('"', out);
-    for (const char *at = valid; *at; at = g_utf8_next_char(at)) {
-        const gunichar c = g_utf8_get_char(at);
-        // "<" could begin "</script>", and U+2028 and U+2029 end a line of old JavaScript.
-        if (c < 0x20 || strchr("\"\\<>&", (int)MIN(c, 0x7f)) || c == 0x2028 || c == 0x2029)
-            fprintf(out, "\\u%04x", (unsigned)c);
-        else
-            fwrite(at, 1, (size_t)(g_utf8_next_char(at) - at), out);
-    }
-    fputc('"', out);
+    // "<" could begin "</script>", and U+2028 and U+2029 end a line of old JavaScript.
+    static const char *const escaped[][2] = {{"<", "\\u003c"},
+                                             {">", "\\u003e"},
+                                             {"&", "\\u0026"},
+                                             {"\u2028", "\\u2028"},
+                                             {"\u2029", "\\u2029"}};
+    g_autoptr(GString) json = g_string_new(NULL);
+    fl_json_string(json, text);
+    for (size_t k = 0; k < G_N_ELEMENTS(escaped); k++)
+        g_string_replace(json, escaped[k][0], escaped[k][1], 0);
+    fputs(json->str, out);
 }
 
 void fl_script_number(FILE *out, double value)

@@ -3,7 +3,6 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
-#include "base/exists.h"
 #include "base/json.h"
 #include "base/surface.h"
 #include "drawing/open_drawing.h"

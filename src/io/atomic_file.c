@@ -1,6 +1,6 @@
 #include "io/atomic_file.h"
 
-#include "base/exists.h"
+#include "base/error.h"
 #include "io/lock.h"
 #include "io/provenance.h"
 

@@ -1,7 +1,6 @@
 #include "job/resume.h"
 
 #include "base/error.h"
-#include "base/exists.h"
 #include "drawing/open_drawing.h"
 #include "io/lock.h"
 #include "io/pattern.h"

@@ -4,7 +4,6 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
-#include "base/exists.h"
 #include "base/suggest.h"
 #include "drawing/open_drawing.h"
 #include "io/atomic_file.h"

@@ -1,5 +1,5 @@
 /* Checks a style: reports what was read and measured, and what will paint badly. */
-#include "base/exists.h"
+#include "base/error.h"
 #include "base/headroom.h"
 #include "style/check_sheet.h"
 #include "style/estimate.h"

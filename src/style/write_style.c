@@ -1,6 +1,6 @@
 #include "style/write_style.h"
 
-#include "base/exists.h"
+#include "base/error.h"
 #include "io/lock.h"
 #include "io/png.h"
 #include "style/manifest.h"
