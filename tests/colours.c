@@ -215,7 +215,8 @@ static void judge(const char *folder, const char *style, Tally *all)
     const FlSetting settings[] = {{.name = "style", .value = style},
                                   {.name = "wash", .value = "0"},
                                   {.name = "hue", .value = "0"}};
-    const FlRenderOptions options = {.inputs = inputs,
+    const FlRenderOptions options = {.size = sizeof options,
+                                     .inputs = inputs,
                                      .settings = settings,
                                      .n_settings = all->washed ? 1 : 3,
                                      .output = output};

@@ -177,7 +177,7 @@ options_are_in_the_table() {
     sed -n '/^typedef struct FlRenderOptions/,/^} FlRenderOptions/p' include/fluidy/render.h |
         sed -E ':a;N;$!ba; s@/\*([^*]|\*+[^*/])*\*+/@@g; s/^[^{]*\{//; s/\}.*//' | tr '\n' ' ' |
         tr ';,' '\n\n' | grep -v '(' | grep -oE '[a-z_0-9]+ *$' | tr -d ' ' |
-        grep -vxE 'inputs|settings|n_settings|config_text|most_side|data' | while read -r field; do
+        grep -vxE 'size|inputs|settings|n_settings|config_text|most_side|data' | while read -r field; do
         grep -qE "^FL_OPTION\(RENDER, [A-Z]+, $field," src/params/options.def ||
             echo "FlRenderOptions has $field, options.def has not"
     done

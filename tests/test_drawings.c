@@ -45,7 +45,7 @@ static void the_table_of_regions_is_the_stored_one(const void *name)
     g_autofree char *stored = NULL;
     g_assert_true(g_file_get_contents(path, &stored, NULL, NULL));
     const char *const inputs[] = {folder, NULL};
-    const FlRenderOptions options = {.inputs = inputs};
+    const FlRenderOptions options = {.size = sizeof options, .inputs = inputs};
     g_autofree char *table = fl_list_regions(&options, FL_LISTING_TABLE, &error);
     g_assert_no_error(error);
     g_auto(GStrv) got = g_strsplit(table, "\n", -1), expected = g_strsplit(stored, "\n", -1);

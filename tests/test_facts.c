@@ -195,7 +195,8 @@ static FlRenderOptions options_of(const char *inputs[2], FlSetting settings[3])
     inputs[0] = film.inputs, inputs[1] = NULL;
     settings[0] = (FlSetting){.name = "style", .value = film.style};
     settings[1] = (FlSetting){.name = "tile", .value = film.tile};
-    return (FlRenderOptions){.inputs = inputs,
+    return (FlRenderOptions){.size = sizeof(FlRenderOptions),
+                             .inputs = inputs,
                              .output = film.output,
                              .cache = film.cache,
                              .flow = film.flow,

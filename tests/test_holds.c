@@ -38,7 +38,8 @@ static Film painted_to(const char *dump, double radius, const FlSetting *setting
     }
     g_autofree char *output = g_build_filename(drawing.folder, "d_%02d.png", NULL);
     const char *const inputs[] = {drawing.folder, NULL};
-    const FlRenderOptions options = {.inputs = inputs,
+    const FlRenderOptions options = {.size = sizeof options,
+                                     .inputs = inputs,
                                      .output = output,
                                      .width = SIDE,
                                      .settings = settings,

@@ -105,7 +105,8 @@ static void render(const Film *film, const char *folder, const char *pattern, bo
         g_assert_true(g_file_set_contents(file, text, -1, NULL));
     }
     const char *const inputs[] = {drawings, NULL};
-    const FlRenderOptions options = {.inputs = inputs,
+    const FlRenderOptions options = {.size = sizeof options,
+                                     .inputs = inputs,
                                      .output = output,
                                      .paint = pattern,
                                      .merge = merge,
@@ -389,7 +390,7 @@ static void the_regions_of_a_drawing_are_data(void)
                     "<rect width='40' height='40' fill='#aa3311'/>"
                     "<path d='M9 9h50' stroke='#000000' stroke-width='.5' fill='none'/>");
     const char *const inputs[] = {drawing, NULL};
-    const FlRenderOptions options = {.inputs = inputs};
+    const FlRenderOptions options = {.size = sizeof options, .inputs = inputs};
     g_autoptr(GError) error = NULL;
     g_autoptr(FlRegionList) list = fl_region_list_new(&options, &error);
     g_assert_no_error(error);

@@ -5,6 +5,7 @@
 #include "threads.h"
 #include <fluidy/fluidy.h>
 #include <math.h>
+#include <string.h>
 
 /* A drawing painted with the small style, to a list of sums unless `output` is set. */
 static void paint(FlRenderOptions options)
@@ -17,10 +18,21 @@ static void paint(FlRenderOptions options)
     const FlSetting settings[] = {{.name = "style", .value = style}};
     const char *const inputs[] = {drawing, NULL};
     g_autoptr(GError) error = NULL;
+    options.size = sizeof options;
     options.inputs = inputs, options.output = output, options.width = 32;
     options.settings = settings, options.n_settings = 1;
     fl_render(&options, &error);
     g_assert_no_error(error);
+}
+
+static void options_without_a_size_are_refused(void)
+{
+    const char *const inputs[] = {"d_1.svg", NULL};
+    const FlRenderOptions options = {.inputs = inputs};
+    g_autoptr(GError) error = NULL;
+    g_assert_false(fl_render(&options, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
+    g_assert_nonnull(strstr(error->message, "sizeof(FlRenderOptions)"));
 }
 
 static void the_number_of_threads_is_the_render_s_own(void)
@@ -84,8 +96,12 @@ static void paint_folder(const char *folder, const char *style_name)
     g_autofree char *style = g_test_build_filename(G_TEST_DIST, "styles", style_name, NULL);
     const FlSetting settings[] = {{.name = "style", .value = style}};
     const char *const inputs[] = {folder, NULL};
-    const FlRenderOptions options = {
-        .inputs = inputs, .output = output, .width = SIDE, .settings = settings, .n_settings = 1};
+    const FlRenderOptions options = {.size = sizeof options,
+                                     .inputs = inputs,
+                                     .output = output,
+                                     .width = SIDE,
+                                     .settings = settings,
+                                     .n_settings = 1};
     g_autoptr(GError) error = NULL;
     fl_render(&options, &error);
     g_assert_no_error(error);
@@ -144,6 +160,7 @@ int main(int argc, char **argv)
     g_setenv("G_TEST_SRCDIR", g_getenv("FLUIDY_FIXTURES"), true);
     g_test_init(&argc, &argv, NULL);
 #define TEST(name) g_test_add_func("/render/" #name, name)
+    TEST(options_without_a_size_are_refused);
     TEST(the_number_of_threads_is_the_render_s_own);
     TEST(nothing_jumps_while_a_shape_fades);
     TEST(holes_in_dry_paint_show_the_paint_below);

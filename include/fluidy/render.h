@@ -117,13 +117,16 @@ typedef struct FlProgress {
 } FlProgress;
 
 /**
- * The options of a render. A zeroed struct means all defaults; inputs are required. The config
- * gives what is not set here; a negative gap means no gap.
+ * The options of a render. Zero the struct and set `size`, so that a program and a library of
+ * different versions understand each other: new fields come last. A zero means the default; inputs
+ * are required. The config gives what is not set here; a negative gap means no gap.
  *
  * Strings belong to the caller and must stay until fl_render() returns. Paths and patterns are
  * relative to the working directory. A pattern has one frame number, written %d, %04d or ####.
  */
 typedef struct FlRenderOptions {
+    size_t size; /**< sizeof(FlRenderOptions); required */
+
     /* Input. */
     const char *const
         *inputs;        /**< NULL-terminated list of patterns, globs, SVG files or one folder */

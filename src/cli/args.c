@@ -356,7 +356,8 @@ static bool make_preview(FlArgs *args, GError **error)
 
 bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
 {
-    *args = (FlArgs){.settings = g_array_new(FALSE, TRUE, sizeof(FlSetting)),
+    *args = (FlArgs){.render.size = sizeof args->render,
+                     .settings = g_array_new(FALSE, TRUE, sizeof(FlSetting)),
                      .limits = g_ptr_array_new(),
                      .strings = g_ptr_array_new_with_free_func(g_free)};
     g_autoptr(GOptionContext) context = new_context(args);

@@ -9,6 +9,7 @@
 #include "io/pattern.h"
 #include "io/png.h"
 #include "job/outputs.h"
+#include "params/options.h"
 #include <fluidy/style.h>
 
 #include <math.h>
@@ -31,9 +32,9 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Subject, subject_clear)
 
 static bool subject_configure(Subject *subject, const FlRenderOptions *options, GError **error)
 {
-    *subject = (Subject){.options = *options};
-    subject->config = fl_config_load(options->config, options, error);
-    if (!subject->config)
+    const FlRenderOptions *o = &subject->options;
+    if (!fl_options_take(options, &subject->options, error) ||
+        !(subject->config = fl_config_load(o->config, o, error)))
         return false;
     fl_config_complete(subject->config, &subject->options);
     return true;
@@ -440,9 +441,10 @@ static bool write_frames(const FlRenderOptions *options, const char *what, Write
         if (!write(&subject, f, pattern, error))
             return false;
     g_autofree char *gaps = fl_drawing_left_out(subject.drawing, subject.options.missing);
-    fl_tell(options->note, options->data, "%d %s%s: %s", n, what, n == 1 ? "" : "s", pattern);
+    const FlRenderOptions *o = &subject.options;
+    fl_tell(o->note, o->data, "%d %s%s: %s", n, what, n == 1 ? "" : "s", pattern);
     if (gaps)
-        fl_tell(options->note, options->data, "%s", gaps);
+        fl_tell(o->note, o->data, "%s", gaps);
     return true;
 }
 

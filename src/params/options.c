@@ -184,6 +184,21 @@ bool fl_option_reject(const FlOption *option, const char *value, GError **error)
 
 /* ---- options of a render --------------------------------------------------------------------- */
 
+/* Fields after `data` are of later versions: a program may be older than they are. */
+#define FIRST_SIZE (offsetof(FlRenderOptions, data) + sizeof(void *))
+
+bool fl_options_take(const FlRenderOptions *given, FlRenderOptions *known, GError **error)
+{
+    *known = (FlRenderOptions){0};
+    memcpy(known, given, MIN(given->size, sizeof *known));
+    known->size = sizeof *known;
+    if (given->size >= FIRST_SIZE)
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "‘size’ is too small; expected sizeof(FlRenderOptions)");
+    return false;
+}
+
 static void *field_of(const FlOption *option, FlRenderOptions *options)
 {
     g_assert(option->scope == FL_SCOPE_RENDER);

@@ -123,6 +123,9 @@ bool fl_option_reject(const FlOption *option, const char *value, GError **error)
 bool fl_option_set(const FlOption *option, const char *value, const char *folder,
                    FlRenderOptions *options, GPtrArray *strings, GError **error);
 
+/** Copies the options of a caller, whose struct may have fewer or more fields. FL_ERROR_USAGE. */
+bool fl_options_take(const FlRenderOptions *given, FlRenderOptions *known, GError **error);
+
 /** Makes an explicit 0, kept as -1, a 0 again: the option has overridden what it may. */
 void fl_option_drop_marker(const FlOption *option, FlRenderOptions *options);
 

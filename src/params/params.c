@@ -102,7 +102,7 @@ int fl_param_find(const char *name)
     return -1;
 }
 
-/* NULL: the parameter is no list. */
+/* The list of a parameter; NULL for other parameters. */
 static FlIntList *list_of(FlParams *params, int index)
 {
     char *const field = (char *)params + param_keys[index].offset;
@@ -110,7 +110,7 @@ static FlIntList *list_of(FlParams *params, int index)
                                       : NULL;
 }
 
-/* Reads a value; if the text is none, params is unchanged. */
+/* Reads a value; an invalid text leaves params unchanged. */
 static bool store(FlParams *params, int index, const char *text)
 {
     FlParams trial = *params;

@@ -11,6 +11,7 @@
 #include "io/pattern.h"
 #include "io/png.h"
 #include "job/outputs.h"
+#include "params/options.h"
 #include "render/render_frames.h"
 #include "style/style_folder.h"
 #include <string.h>
@@ -255,19 +256,21 @@ static bool write_page(const Comparison *c, const Variant *variants, int n, GErr
     return fl_atomic_commit(&file, error);
 }
 
-static bool compare(const Kind *kind, const FlRenderOptions *options, const Variant *variants,
-                    int n, GError **error)
+static bool compare(const Kind *kind, const FlRenderOptions *given, const Variant *variants, int n,
+                    GError **error)
 {
     g_auto(Comparison) c = {0};
-    if (!comparison_init(&c, kind, options, n, error) || !show_drawing(&c, error))
+    FlRenderOptions options;
+    if (!fl_options_take(given, &options, error) ||
+        !comparison_init(&c, kind, &options, n, error) || !show_drawing(&c, error))
         return false;
     for (int k = 0; k < n; k++)
         if (!paint(&c, &variants[k], k + 1, error))
             return false;
-    if (!fl_contact_sheet_save(&c.contact, c.path, options->overwrite == FL_OVERWRITE_YES, error) ||
+    if (!fl_contact_sheet_save(&c.contact, c.path, options.overwrite == FL_OVERWRITE_YES, error) ||
         (kind->has_page && !write_page(&c, variants, n, error)))
         return false;
-    fl_tell(options->note, options->data, "%d %s%s: %s", n, kind->noun, n == 1 ? "" : "s", c.path);
+    fl_tell(options.note, options.data, "%d %s%s: %s", n, kind->noun, n == 1 ? "" : "s", c.path);
     return true;
 }
 

@@ -6,6 +6,7 @@
 #include "inspect/stats.h"
 #include "job/outputs.h"
 #include "job/resume.h"
+#include "params/options.h"
 #include "render/frame_writer.h"
 #include "render/frames.h"
 #include "render/render_frames.h"
@@ -275,16 +276,19 @@ static bool try_render(const FlRenderOptions *options, FlFrameTaker taker, bool 
     return done;
 }
 
-static bool render(const FlRenderOptions *options, FlFrameTaker taker, GError **error)
+static bool render(const FlRenderOptions *given, FlFrameTaker taker, GError **error)
 {
     const int threads = fl_schedule_threads();
-    FlRenderOptions again = *options;
+    FlRenderOptions options;
     bool stale = false;
-    if (options->threads > 0)
-        (void)fl_schedule_set_threads(options->threads);
-    bool done = try_render(options, taker, &stale, error);
+    if (!fl_options_take(given, &options, error))
+        return false;
+    FlRenderOptions again = options;
+    if (options.threads > 0)
+        (void)fl_schedule_set_threads(options.threads);
+    bool done = try_render(&options, taker, &stale, error);
     again.resume = false; // the state may be what is damaged; other paint is in the cache
-    if (options->overwrite == FL_OVERWRITE_REFUSE)
+    if (options.overwrite == FL_OVERWRITE_REFUSE)
         again.overwrite = FL_OVERWRITE_YES; // of frames that the first try has found free
     while (!done && stale) {
         g_clear_error(error);
