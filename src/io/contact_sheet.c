@@ -66,8 +66,7 @@ static void write_line(cairo_t *cr, double x, double y, bool bold, const char *t
     cairo_show_text(cr, text);
 }
 
-/* The words of a line that fit into a caption, at least one; the rest begins at *line. */
-static char *take_words(cairo_t *cr, const char **line)
+char *fl_take_words(cairo_t *cr, double width, const char **line)
 {
     cairo_text_extents_t extents;
     char *fits = NULL;
@@ -76,7 +75,7 @@ static char *take_words(cairo_t *cr, const char **line)
         end += strcspn(end, " ");
         g_autofree char *words = g_strndup(*line, (gsize)(end - *line));
         cairo_text_extents(cr, words, &extents);
-        if (fits && extents.width > WORDS_WIDTH - GAP)
+        if (fits && extents.width > width)
             break;
         g_free(fits);
         fits = g_steal_pointer(&words);
@@ -99,7 +98,7 @@ void fl_contact_sheet_name_row(const FlContactSheet *contact, int row, const cha
     for (int k = 0, at = 2; line[k]; k++) {
         const char *rest = line[k];
         do {
-            g_autofree char *words = take_words(cr, &rest);
+            g_autofree char *words = fl_take_words(cr, WORDS_WIDTH - GAP, &rest);
             write_line(cr, -WORDS_WIDTH, at++ * LINE + 3, false, words);
         } while (*rest);
     }

@@ -30,6 +30,9 @@ void fl_contact_sheet_name_row(const FlContactSheet *contact, int row, const cha
 /** The caption above a column. */
 void fl_contact_sheet_name_column(const FlContactSheet *contact, int column, const char *name);
 
+/** Takes the words that fit into a width, at least one, from the front of *line. To be freed. */
+char *fl_take_words(cairo_t *cr, double width, const char **line);
+
 /** Writes the sheet as a PNG file. FL_ERROR_OUTPUT, FL_ERROR_EXISTS, FL_ERROR_NO_MEMORY. */
 bool fl_contact_sheet_save(const FlContactSheet *contact, const char *path, bool overwrite,
                            GError **error);

@@ -96,24 +96,23 @@ char *fl_facts_difference(const FlFacts *before, const FlFacts *now)
     return NULL;
 }
 
-GVariant *fl_facts_pack(const FlFacts *facts)
+void fl_facts_put(GByteArray *out, const FlFacts *facts)
 {
-    GVariantBuilder list;
-    g_variant_builder_init(&list, G_VARIANT_TYPE(FL_FACTS_TYPE));
+    fl_put_int(out, (int)facts->list->len);
     for (guint k = 0; k < facts->list->len; k++) {
         const FlFact *fact = &g_array_index(facts->list, FlFact, k);
-        g_variant_builder_add(&list, "(ss)", fact->name, fact->value);
+        fl_put_text(out, fact->name);
+        fl_put_text(out, fact->value);
     }
-    return g_variant_builder_end(&list);
 }
 
-FlFacts *fl_facts_unpack(GVariant *variant)
+FlFacts *fl_facts_take(FlReader *reader)
 {
     FlFacts *facts = fl_facts_new();
-    const char *name, *value;
-    GVariantIter at;
-    g_variant_iter_init(&at, variant);
-    while (g_variant_iter_next(&at, "(&s&s)", &name, &value))
-        fl_facts_add(facts, name, value);
+    const int n = fl_take_count(reader, 2);
+    for (int k = 0; k < n && !reader->failed; k++) {
+        const char *name = fl_take_text(reader);
+        fl_facts_add(facts, name, fl_take_text(reader));
+    }
     return facts;
 }

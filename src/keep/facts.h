@@ -3,7 +3,7 @@
 #define FLUIDY_KEEP_FACTS_H
 
 #include "base/digest.h"
-#include <glib.h>
+#include "base/reader.h"
 
 /** One fact, such as "w-temp of region hair" and "50"; UTF-8. */
 typedef struct FlFact {
@@ -34,14 +34,10 @@ FlDigest fl_facts_digest(const FlFacts *facts);
 /** The first difference, as a clause, to be freed; NULL if all facts are equal. */
 char *fl_facts_difference(const FlFacts *before, const FlFacts *now);
 
-/** GVariant's type of packed facts. */
-#define FL_FACTS_TYPE "a(ss)"
+void fl_facts_put(GByteArray *out, const FlFacts *facts);
 
-/** Packs the facts; to be freed as any new GVariant. */
-GVariant *fl_facts_pack(const FlFacts *facts);
-
-/** The reverse of a variant of FL_FACTS_TYPE. */
-FlFacts *fl_facts_unpack(GVariant *variant);
+/** The reverse. Returns: to be freed, even if the reader has failed. */
+FlFacts *fl_facts_take(FlReader *reader);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlFacts, fl_facts_free)
 

@@ -257,19 +257,16 @@ void fl_reuse_finish(FlReuse *reuse)
                            {&reuse->rect, sizeof reuse->rect},
                            {reuse->made->data, n * sizeof(FlDigest)}};
     fl_store_put(reuse->cache, FL_KEPT_FILM, reuse->film, film, n > 0 ? G_N_ELEMENTS(film) : 1);
-    g_autoptr(GVariant) facts = g_variant_ref_sink(fl_facts_pack(reuse->facts));
-    const FlSpan packed = {(void *)(uintptr_t)g_variant_get_data(facts), g_variant_get_size(facts)};
-    fl_store_put(reuse->cache, FL_KEPT_FACTS, reuse->slot, &packed, 1);
+    g_autoptr(GByteArray) facts = g_byte_array_new();
+    fl_facts_put(facts, reuse->facts);
+    fl_store_put(reuse->cache, FL_KEPT_FACTS, reuse->slot, &(FlSpan){facts->data, facts->len}, 1);
 }
 
 char *fl_reuse_reason(const FlReuse *reuse)
 {
     g_autoptr(GBytes) bytes =
         reuse->cache ? fl_store_get(reuse->cache, FL_KEPT_FACTS, reuse->slot) : NULL;
-    if (!bytes)
-        return NULL;
-    g_autoptr(GVariant) packed =
-        g_variant_ref_sink(g_variant_new_from_bytes(G_VARIANT_TYPE(FL_FACTS_TYPE), bytes, FALSE));
-    g_autoptr(FlFacts) before = fl_facts_unpack(packed);
-    return fl_facts_difference(before, reuse->facts);
+    FlReader reader = fl_reader_of(bytes);
+    g_autoptr(FlFacts) before = fl_facts_take(&reader);
+    return fl_reader_ends(&reader) ? fl_facts_difference(before, reuse->facts) : NULL;
 }

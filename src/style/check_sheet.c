@@ -1,6 +1,7 @@
 #include "style/check_sheet.h"
 
 #include "base/surface.h"
+#include "io/contact_sheet.h"
 #include "io/png.h"
 
 #include <math.h>
@@ -244,22 +245,13 @@ static void draw_plots(const Page *page, double x, double y)
 static double write_wrapped(cairo_t *cr, double x, double y, double width, const double rgb[3],
                             const char *text)
 {
-    g_auto(GStrv) words = g_strsplit(text, " ", -1);
-    g_autoptr(GString) line = g_string_new(NULL);
-    for (int i = 0; words[i]; i++) {
-        const gsize before = line->len;
-        cairo_text_extents_t extents;
-        g_string_append_printf(line, "%s%s", i ? " " : "", words[i]);
-        cairo_text_extents(cr, line->str, &extents);
-        if (extents.x_advance <= width || before == 0)
-            continue;
-        g_string_truncate(line, before);
-        write_line(cr, x, y, rgb, line->str);
-        y += LINE;
-        g_string_printf(line, "    %s", words[i]);
+    const double indent = width / 16;
+    for (const char *rest = text; *rest; y += LINE) {
+        const double in = rest == text ? 0 : indent;
+        g_autofree char *words = fl_take_words(cr, width - in, &rest);
+        write_line(cr, x + in, y, rgb, words);
     }
-    write_line(cr, x, y, rgb, line->str);
-    return y + LINE;
+    return y;
 }
 
 static double write_texts(const Page *page, double x, double y)

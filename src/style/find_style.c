@@ -79,14 +79,12 @@ static int compare_strings(const void *a, const void *b)
 
 static void read_manifest(FlStyleEntry *entry)
 {
-    FlStyle style = {0}; // its strings are freed below
+    g_autoptr(FlStyle) style = g_new0(FlStyle, 1);
     g_autofree char *file = g_build_filename(entry->path, "style.ini", NULL);
-    if (g_file_test(file, G_FILE_TEST_EXISTS) && fl_manifest_read(&style, file, NULL)) {
-        entry->title = g_steal_pointer(&style.name);
-        entry->character = g_steal_pointer(&style.character);
+    if (g_file_test(file, G_FILE_TEST_EXISTS) && fl_manifest_read(style, file, NULL)) {
+        entry->title = g_steal_pointer(&style->name);
+        entry->character = g_steal_pointer(&style->character);
     }
-    g_free(style.name), g_free(style.character), g_free(style.author), g_free(style.licence);
-    g_free(style.made_by), g_free(style.missing_orientations);
 }
 
 GPtrArray *fl_style_list(void)
