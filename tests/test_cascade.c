@@ -243,6 +243,7 @@ static void colours_are_those_of_a_browser(void)
         {"hsl(120deg 100% 25%)", "rgb(0, 128, 0)"},
         {"color-mix(in oklab, white, black)", "rgb(99, 99, 99)"},
         {"color-mix(in oklch, red, white 0%)", "rgb(255, 0, 0)"},
+        {"color-mix(in srgb, red, transparent)", "rgba(255, 0, 0, 0.5)"},
         {"color-mix(in hsl, red, lime)", "rgb(255, 255, 0)"},
         {"color-mix(in hsl longer hue, red, lime)", "rgb(0, 0, 255)"},
         {"light-dark(red, blue)", "rgb(255, 0, 0)"},
@@ -294,11 +295,13 @@ static void what_use_shows_has_the_variables_of_use(void)
 {
 #define SHOWN(use)                                                                                 \
     "<style>.in .p{fill:var(--c, #111111)}</style><g class='in'><path id='p' class='p'/></g>"      \
+    "<defs><use id='q' href='#p'/></defs>"                                                         \
     "<g id='a' style='--c:#222222'>" use "</g>"
     static const char *const uses[][2] = {
         {"<use href='#p'/>", "#222222"},
         {"<use href='#p' style='--c:#333333'/>", "#333333"},
         {"<use href='#p' style='--c:initial'/>", "#111111"},
+        {"<use href='#q' style='--c:#333333'/>", "#333333"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(uses); i++) {
         g_autoptr(Scratch) folder = scratch_make();

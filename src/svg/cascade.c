@@ -32,8 +32,10 @@ typedef struct Cascade {
     double seconds;   // the moment that is shown; NAN: animations are left out
     FlFilmLength *length;
     GHashTable *ids;   // id -> xmlNode, the first of that id
+    GHashTable *needs; // xmlNode that <use> shows -> whether it has variables
     GHashTable *shown; // xmlNode -> a copy as it was written, of what <use> shows with variables
     int n_copied;      // elements
+    int depth;         // of <use> that shows <use>
     int n_clips;
 } Cascade;
 
@@ -437,11 +439,38 @@ static bool has_variable(const GArray *declarations)
     return false;
 }
 
-/** Returns: true if an element, or one in it, has a value with var(). */
+static const xmlNode *target_of_use(const Cascade *c, const xmlNode *use)
+{
+    g_autoptr(xmlChar) plain = fl_attribute(use, "href");
+    g_autofree char *foreign = plain ? NULL : fl_foreign_attribute(use, "href");
+    const char *href = plain ? (const char *)plain : foreign;
+    return href && *href == '#' ? g_hash_table_lookup(c->ids, href + 1) : NULL;
+}
+
+static bool needs_variables(Cascade *c, const xmlNode *node);
+
+/** Returns: true if what a <use> shows has a value with var(). */
+static bool target_needs_variables(Cascade *c, const xmlNode *target)
+{
+    void *known;
+    if (g_hash_table_lookup_extended(c->needs, target, NULL, &known))
+        return known != NULL;
+    if (c->depth >= fl_limit(FL_LIMIT_DEPTH))
+        return false;
+    g_hash_table_insert(c->needs, (gpointer)target, NULL); // until it is known: it may show itself
+    c->depth++;
+    const bool found = needs_variables(c, target);
+    c->depth--;
+    g_hash_table_insert(c->needs, (gpointer)target, GINT_TO_POINTER(found));
+    return found;
+}
+
+/** Returns: true if an element, or one in it or shown by it, has a value with var(). */
 static bool needs_variables(Cascade *c, const xmlNode *node)
 {
     g_autoptr(GArray) matched = match(c, node);
-    bool found = false;
+    const xmlNode *target = fl_is(node, "use") ? target_of_use(c, node) : NULL;
+    bool found = target && target_needs_variables(c, target);
     for (guint i = 0; i < matched->len && !found; i++)
         found = has_variable(g_array_index(matched, const FlCssRule *, i)->declarations);
     for (const xmlAttr *a = node->properties; a && !found; a = a->next)
@@ -450,14 +479,6 @@ static bool needs_variables(Cascade *c, const xmlNode *node)
     for (const xmlNode *child = node->children; child && !found; child = child->next)
         found = child->type == XML_ELEMENT_NODE && needs_variables(c, child);
     return found;
-}
-
-static const xmlNode *target_of_use(const Cascade *c, const xmlNode *use)
-{
-    g_autoptr(xmlChar) plain = fl_attribute(use, "href");
-    g_autofree char *foreign = plain ? NULL : fl_foreign_attribute(use, "href");
-    const char *href = plain ? (const char *)plain : foreign;
-    return href && *href == '#' ? g_hash_table_lookup(c->ids, href + 1) : NULL;
 }
 
 /** A copy whose elements point to those where rules are matched. */
@@ -487,7 +508,7 @@ static void free_copy(void *node)
 static void keep_shown(Cascade *c, const xmlNode *node)
 {
     const xmlNode *target = fl_is(node, "use") ? target_of_use(c, node) : NULL;
-    if (target && !g_hash_table_contains(c->shown, target) && needs_variables(c, target))
+    if (target && !g_hash_table_contains(c->shown, target) && target_needs_variables(c, target))
         g_hash_table_insert(c->shown, (gpointer)target, copy_linked(target));
     for (const xmlNode *child = node->children; child; child = child->next)
         if (child->type == XML_ELEMENT_NODE)
@@ -499,9 +520,10 @@ static void show_with_variables(Cascade *c, xmlNode *use, Style *style)
 {
     const xmlNode *target = fl_is(use, "use") ? target_of_use(c, use) : NULL;
     const xmlNode *kept = target ? g_hash_table_lookup(c->shown, target) : NULL;
+    int depth = 0;
     for (const Style *s = style; s && kept; s = s->around)
-        if (s->shows == target)
-            kept = NULL; // a cycle, of which fl_document_normalise() tells
+        if (s->shows == target || ++depth > fl_limit(FL_LIMIT_DEPTH))
+            kept = NULL; // a cycle, or too deep: fl_document_normalise() tells
     for (const xmlNode *at = use; at && kept; at = at->parent)
         if (at == target)
             kept = NULL;
@@ -702,6 +724,7 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
     g_autoptr(GHashTable) rules = index_rules(fl_css_sheet_rules(sheet));
     g_autoptr(GHashTable) said = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
+    g_autoptr(GHashTable) needs = g_hash_table_new(NULL, NULL);
     g_autoptr(GHashTable) shown = g_hash_table_new_full(NULL, NULL, NULL, free_copy);
     Cascade c = {.doc = doc,
                  .path = path,
@@ -713,6 +736,7 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
                  .seconds = seconds,
                  .length = length,
                  .ids = ids,
+                 .needs = needs,
                  .shown = shown};
     const GArray *initial = fl_css_sheet_initial(sheet);
     for (guint i = 0; i < initial->len; i++) {

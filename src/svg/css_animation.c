@@ -170,7 +170,7 @@ static const char *find(const GArray *declarations, const char *property)
     const char *value = NULL;
     for (guint i = 0; i < declarations->len; i++) {
         const FlCssDeclaration *d = &g_array_index(declarations, FlCssDeclaration, i);
-        if (strcmp(d->name, property) == 0)
+        if (strcmp(d->name, property) == 0 && !d->important) // key frames have no such priority
             value = d->value;
     }
     return value;
@@ -300,7 +300,8 @@ static GPtrArray *properties_of(const GArray *frames)
         const GArray *list = g_array_index(frames, FlCssKeyframe, i).declarations;
         for (guint k = 0; k < list->len; k++) {
             const char *name = g_array_index(list, FlCssDeclaration, k).name;
-            if (!g_str_has_prefix(name, "animation-") && !g_ptr_array_find(properties, name, NULL))
+            if (!g_str_has_prefix(name, "animation-") && find(list, name) &&
+                !g_ptr_array_find(properties, name, NULL))
                 g_ptr_array_add(properties, (gpointer)name); // interned
         }
     }

@@ -404,6 +404,10 @@ static bool read_colour(const char *text, Rgba *colour, int depth)
         return false;
     if (*text == '#')
         return from_hex(text + 1, colour);
+    if (g_ascii_strcasecmp(text, "transparent") == 0) {
+        *colour = (Rgba){{0}, 0};
+        return true;
+    }
     if (!fl_css_call(text, &name, &arguments))
         return from_name(text, colour);
     if (strcmp(name, "color-mix") == 0)

@@ -194,8 +194,7 @@ static const char *apply_transform(const FlCssEffects *effects, xmlNode *node,
     FlCssUnits in_box = *units;
     in_box.width = box.width, in_box.height = box.height;
     FlPoint origin = {box.x, box.y};
-    if (origin_text && !fl_css_position(origin_text, &in_box, box, &origin))
-        return "transform-origin";
+    const bool bad_origin = origin_text && !fl_css_position(origin_text, &in_box, box, &origin);
     FlAffine all = {1, 0, 0, 1, origin.x, origin.y}, own = FL_AFFINE_NONE;
     const FlAffine back = {1, 0, 0, 1, -origin.x, -origin.y};
     if (attribute && !fl_affine_parse((const char *)attribute, &own))
@@ -213,7 +212,7 @@ static const char *apply_transform(const FlCssEffects *effects, xmlNode *node,
     multiply(&all, &own);
     multiply(&all, &back);
     set_matrix(node, &all);
-    return NULL;
+    return bad_origin ? "transform-origin" : NULL;
 }
 
 /* ---- clips, backgrounds, dashes -------------------------------------------------------------- */

@@ -292,8 +292,8 @@ static char *mix_matrices(const char *a, const char *b, double p, const FlCssUni
         return NULL;
     if (!take_apart(ma, &x) || !take_apart(mb, &y))
         return g_strdup(p < .5 ? a : b);
-    double turn = y.turn - x.turn; // the shorter way
-    turn -= 2 * G_PI * floor(turn / (2 * G_PI) + .5);
+    double turn = y.turn - x.turn; // the shorter way, clockwise for half a turn
+    turn -= 2 * G_PI * ceil(turn / (2 * G_PI) - .5);
     const Parts between = {x.x + (y.x - x.x) * p,    x.y + (y.y - x.y) * p,
                            x.turn + turn * p,        x.sx + (y.sx - x.sx) * p,
                            x.sy + (y.sy - x.sy) * p, x.skew + (y.skew - x.skew) * p};
