@@ -157,6 +157,25 @@ static void what_rests_has_an_anchor_that_rests(void)
     g_assert_cmpfloat(fl_drawing_anchor(drawing, 0, 0).x, ==, first.x / 2);
 }
 
+/* A long shape has the axis that it has when it is first seen; a round one has none. */
+static void a_long_shape_has_an_axis(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < N; t++) {
+        g_autofree char *shapes =
+            g_strdup_printf("<path fill=\"red\" d=\"M-30,-8L30,-8L30,8L-30,8z\" "
+                            "transform=\"translate(50 50) rotate(%d)\"/>"
+                            "<path fill=\"blue\" d=\"M60,10h20v20h-20z\"/>",
+                            30 + 5 * t);
+        add_frame(folder, t, shapes);
+    }
+    g_autoptr(FlDrawing) drawing = open_film(folder);
+    for (int t = 0; t < N; t++) {
+        g_assert_cmpfloat_with_epsilon(fl_drawing_anchor(drawing, 0, t).axis, 30, .5);
+        g_assert_true(isnan(fl_drawing_anchor(drawing, 1, t).axis));
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -168,6 +187,7 @@ int main(int argc, char **argv)
     TEST("other-nodes-are-no-turn", other_nodes_are_no_turn);
     TEST("a-leaf-that-goes-takes-nothing-along", a_leaf_that_goes_takes_nothing_along);
     TEST("a-shape-that-is-built-holds-its-anchor", a_shape_that_is_built_holds_its_anchor);
+    TEST("a-long-shape-has-an-axis", a_long_shape_has_an_axis);
     TEST("what-rests-has-an-anchor-that-rests", what_rests_has_an_anchor_that_rests);
 #undef TEST
     return g_test_run();

@@ -19,6 +19,8 @@ static double disc_at(int dx, int dy)
     return hole * CLAMP(RADIUS - hypot(dx, dy) + .5, 0, 1);
 }
 
+static const FlPicture *image; // of directions; NULL: there is none
+
 /* Lays marks over a disc whose middle is (x, y), which was first seen at (x - moved, y); amounts
  * without coverage are -1. */
 static void lay(FlMarks marks, float angle, int x, int y, int moved, const int8_t *height,
@@ -28,9 +30,18 @@ static void lay(FlMarks marks, float angle, int x, int y, int moved, const int8_
     g_autofree uint8_t *coverage = g_malloc0(W * H);
     GError *error = NULL;
     FlArea area = {0};
-    const FlMarking marking = {
-        marks,       angle, {(float)x, (float)y, 1, 0, (float)(x - moved), (float)y, 2 * RADIUS},
-        {height, W}, 1,     5};
+    const FlMarking marking = {.marks = marks,
+                               .angle = angle,
+                               .directions = {image, W, H},
+                               .anchor = {.x = (float)x,
+                                          .y = (float)y,
+                                          .cosine = 1,
+                                          .rest_x = (float)(x - moved),
+                                          .rest_y = (float)y,
+                                          .side = 2 * RADIUS},
+                               .tooth = {height, W},
+                               .paper_px = 1,
+                               .key = 5};
     for (int p = 0; p < W * H; p++)
         coverage[p] = (uint8_t)(255 * disc_at(p % W - x, p / W - y));
     fl_area_init(&area, coverage, W, H);
@@ -87,6 +98,30 @@ static void strokes_have_the_direction_that_is_asked_for(void)
         g_assert_cmpfloat(first, >, 1.4);
         g_assert_cmpfloat(second, >, 1.4);
     }
+}
+
+/* Left of the middle the image says level strokes, right of it upright ones: what counts is where
+ * the figure was first seen. */
+static void an_image_turns_strokes(void)
+{
+    g_autofree int8_t *paper = bumpy_paper();
+    g_autofree Laid *left = g_new(Laid, 1), *right = g_new(Laid, 1), *weak = g_new(Laid, 1);
+    uint8_t rgba[] = {255, 128, 255, 255, 128, 0, 255, 255};
+    const FlPicture picture = {2, 1, rgba};
+    image = &picture;
+    lay(FL_MARKS_PASTEL, 45, 150, 130, 100, paper, left);
+    lay(FL_MARKS_PASTEL, 45, 150, 130, -100, paper, right);
+    rgba[2] = rgba[6] = 0;
+    lay(FL_MARKS_PASTEL, 0, 150, 130, -100, paper, weak);
+    image = NULL;
+    const double level = change(left, 150, 130, 0, 6) / change(left, 150, 130, 6, 0);
+    const double upright = change(right, 150, 130, 6, 0) / change(right, 150, 130, 0, 6);
+    const double own = change(weak, 150, 130, 0, 6) / change(weak, 150, 130, 6, 0);
+    g_test_message("across over along: level %.2f, upright %.2f, the hand's own %.2f", level,
+                   upright, own);
+    g_assert_cmpfloat(level, >, 1.4);
+    g_assert_cmpfloat(upright, >, 1.4);
+    g_assert_cmpfloat(own, >, 1.4);
 }
 
 static void paint_lies_on_the_peaks_of_the_paper(void)
@@ -159,6 +194,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     TEST(strokes_have_the_direction_that_is_asked_for);
+    TEST(an_image_turns_strokes);
     TEST(paint_lies_on_the_peaks_of_the_paper);
     TEST(strokes_ride_with_the_figure_and_the_paper_stays);
     TEST(pixels_without_paint_stay_and_threads_change_nothing);

@@ -169,6 +169,7 @@ typedef struct FlRenderOptions {
     /** "K/N": merge the K-th of N parts of the frames alone, without their film; "film": make the
      *  film of the frames that such merges have composed; NULL: all */
     const char *part;
+    const char *directions; /**< PNG or JPEG of directions, see fluidy-svg(1); NULL: none */
     const char *background; /**< "#rrggbb", "none", an image or a pattern; NULL: the paper */
     double stain_time;      /**< frames at 24 per second in which stains fade to a third; 0: 7 */
     double overrun; /**< px on a page of 480 px that fronts go beyond shapes, ..40; 0: 5, below 0:

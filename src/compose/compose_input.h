@@ -4,6 +4,7 @@
 
 #include "compose/background.h"
 #include "compose/contacts.h"
+#include "compose/directions.h"
 #include "compose/laid.h"
 #include "compose/painted_region.h"
 #include "compose/paper_sheet.h"
@@ -26,6 +27,7 @@ typedef struct FlComposeInput {
     const FlBackground *background;
     const FlPaperSheet *sheet;  // of paper; NULL: no sheet
     FlTooth tooth;              // of the frame, in the size of the drawing
+    FlDirections directions;    // of the hand
     uint64_t seed;              // of what is uneven
     int width, height;          // of the frame, px
     float paper_px;             // of the frame per px of the sheet of paper

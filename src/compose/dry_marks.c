@@ -9,6 +9,7 @@
 #include "guides/distance.h"
 
 #include <math.h>
+#include <string.h>
 
 /* A tool. Lengths are px of the page. */
 typedef struct Tool {
@@ -39,7 +40,7 @@ typedef struct Hand {
     const Tool *tool;
     float small;        // 0..1: shapes of a few px get hardly any gaps
     float length;       // factor on the lengths of marks, less in small shapes
-    float along[2];     // unit vector of the strokes
+    float angle;        // of the strokes, radians
     const float *depth; // of `around`, px of the frame
     FlRect around;
 } Hand;
@@ -91,6 +92,63 @@ static float amount_at(const Hand *hand, float stick, float line, float edge, fl
     return ((1 - smear) * cover * (1 + .22f * NOISE_DEV * line) + smear * rubbed) * tool->dark;
 }
 
+/* The places of some pixels when the region was first seen, px of the page, and what bends their
+ * strokes aside. */
+typedef struct Places {
+    int n;
+    Row x, y, bend;
+} Places;
+
+/* Strokes in a direction, and the lines in them; strokes of other keys have nothing in common. */
+static void strokes_along(const Hand *hand, const Places *at, float angle, int key, float *stick,
+                          float *line)
+{
+    const Tool *tool = hand->tool;
+    const float cosine = cosf(angle), sine = sinf(angle);
+    Row along, across;
+    for (int i = 0; i < at->n; i++) {
+        along[i] = cosine * at->x[i] + sine * at->y[i];
+        across[i] = cosine * at->y[i] - sine * at->x[i] + BEND_PX * at->bend[i];
+    }
+    noise_along(hand, KEY_STICK + key, along, across, tool->stroke_px, tool->stick_px, at->n,
+                stick);
+    noise_along(hand, KEY_LINE + key, along, across, .6f * tool->stroke_px, tool->line_px, at->n,
+                line);
+}
+
+#define TURNS 12 // directions of strokes where an image turns them: the nearest two are mixed
+#define TURN_KEYS 1000
+
+/* The strokes of each pixel in the image's direction. */
+static void strokes_turned(const Hand *hand, const Places *at, float *stick, float *line)
+{
+    const FlMarking *marking = hand->marking;
+    Row turn, one, other;
+    memset(stick, 0, (size_t)at->n * sizeof *stick);
+    memset(line, 0, (size_t)at->n * sizeof *line);
+    for (int i = 0; i < at->n; i++) {
+        const float angle = fl_direction_at(&marking->directions, at->x[i] * marking->paper_px,
+                                            at->y[i] * marking->paper_px, 0, hand->angle);
+        const float turns = angle * (float)(TURNS / G_PI);
+        turn[i] = turns - TURNS * floorf(turns / TURNS);
+    }
+    for (int k = 0; k < TURNS; k++) {
+        Row weight;
+        bool any = false;
+        for (int i = 0; i < at->n; i++) {
+            const float off = fabsf(turn[i] - (float)k), near = 1 - MIN(off, TURNS - off);
+            const float share = MAX(near, 0);
+            weight[i] = share / sqrtf(share * share + (1 - share) * (1 - share));
+            any = any || share > 0;
+        }
+        if (!any)
+            continue;
+        strokes_along(hand, at, (float)(k * G_PI / TURNS), (k + 1) * TURN_KEYS, one, other);
+        for (int i = 0; i < at->n; i++)
+            stick[i] += weight[i] * one[i], line[i] += weight[i] * other[i];
+    }
+}
+
 /* n pixels of the frame from (x, y) on, which are `depth` px of the frame inside the contour. */
 static void lay_pixels(const Hand *hand, int x, int y, int n, const float *depth, int16_t *amounts)
 {
@@ -98,18 +156,17 @@ static void lay_pixels(const Hand *hand, int x, int y, int n, const float *depth
                        place[2] = {60, 60};
     const FlMarking *marking = hand->marking;
     const Tool *tool = hand->tool;
-    Row px, py, along, across, stick, line, smear, rub, edge;
-    fl_anchor_rest_row(&marking->anchor, x, y, 1, n, 1 / marking->paper_px, px, py);
-    noise_at(hand, KEY_BEND, px, py, bent, n, stick);
-    for (int i = 0; i < n; i++) {
-        along[i] = hand->along[0] * px[i] + hand->along[1] * py[i];
-        across[i] = hand->along[0] * py[i] - hand->along[1] * px[i] + BEND_PX * stick[i];
-    }
-    noise_along(hand, KEY_STICK, along, across, tool->stroke_px, tool->stick_px, n, stick);
-    noise_along(hand, KEY_LINE, along, across, .6f * tool->stroke_px, tool->line_px, n, line);
-    noise_at(hand, KEY_SMEAR, px, py, wide, n, smear);
-    noise_at(hand, KEY_RUB, px, py, fine, n, rub);
-    noise_at(hand, KEY_EDGE, px, py, place, n, edge);
+    Places at = {.n = n};
+    Row stick, line, smear, rub, edge;
+    fl_anchor_rest_row(&marking->anchor, x, y, 1, n, 1 / marking->paper_px, at.x, at.y);
+    noise_at(hand, KEY_BEND, at.x, at.y, bent, n, at.bend);
+    if (marking->directions.image)
+        strokes_turned(hand, &at, stick, line);
+    else
+        strokes_along(hand, &at, hand->angle, 0, stick, line);
+    noise_at(hand, KEY_SMEAR, at.x, at.y, wide, n, smear);
+    noise_at(hand, KEY_RUB, at.x, at.y, fine, n, rub);
+    noise_at(hand, KEY_EDGE, at.x, at.y, place, n, edge);
     for (int i = 0; i < n; i++) {
         if (amounts[i] < 0)
             continue;
@@ -154,14 +211,13 @@ bool fl_marks_lay(const FlMarking *marking, const FlArea *area, FlRect page,
                   const uint8_t *coverage, int16_t *amounts, GError **error)
 {
     const FlRect box = area->box, around = fl_rect_grown(box, 2, page);
-    const float angle = marking->angle * (float)(G_PI / 180);
     const float size = marking->anchor.side / marking->paper_px;
     g_autofree float *depth = find_depth(around, box, coverage, error);
     const Hand hand = {.marking = marking,
                        .tool = &tools[marking->marks],
                        .small = fl_clamp((34 - size) / 26, 0, 1),
                        .length = fl_clamp(size / 70, .45f, 1),
-                       .along = {cosf(angle), sinf(angle)},
+                       .angle = marking->angle * (float)(G_PI / 180),
                        .depth = depth,
                        .around = around};
     if (!depth)

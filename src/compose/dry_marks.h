@@ -5,17 +5,19 @@
 
 #include "base/rect.h"
 #include "base/tooth.h"
+#include "compose/directions.h"
 #include "drawing/drawing.h"
 #include "params/medium.h"
 
 /** The marks of a region in a frame. */
 typedef struct FlMarking {
-    FlMarks marks;   // charcoal, pastel or brush
-    float angle;     // direction when the region was first seen, degrees; 90: down
-    FlAnchor anchor; // strokes ride with the region
-    FlTooth tooth;   // of the frame, where the paper has one
-    float paper_px;  // of the frame per px of the page
-    uint64_t key;    // of the film's seed and the fill
+    FlMarks marks;           // charcoal, pastel or brush
+    float angle;             // direction when the region was first seen, degrees; 90: down
+    FlDirections directions; // of an image, likewise
+    FlAnchor anchor;         // strokes ride with the region
+    FlTooth tooth;           // of the frame, where the paper has one
+    float paper_px;          // of the frame per px of the page
+    uint64_t key;            // of the film's seed and the fill
 } FlMarking;
 
 /**

@@ -43,6 +43,7 @@ FlStacking fl_stacking_of(const FlPaintedRegion *painted)
     return is_cut_out(painted) && stacking != FL_STACKING_GLAZE ? FL_STACKING_OVER : stacking;
 }
 
+#define HAND -58     // degrees: the direction of a right hand's strokes
 #define PALETTE .85f // of the way from a fill to the nearest mixture of two pigments
 
 /* The fill of a region, whatever its fill is in this frame: the mixture for it never changes. */
@@ -135,15 +136,27 @@ static FlMarks marks_of(const FlPaintedRegion *painted)
                                                    : painted->style->marks;
 }
 
+/* Along the region's axis if its marks ask for that; in round ones as a right hand draws. */
+static float angle_of_marks(const FlPaintedRegion *painted)
+{
+    const float axis = painted->anchor.axis;
+    const double said = painted->settings->marks_angle;
+    return !isnan(said) ? (float)said : !isnan(axis) ? axis : HAND;
+}
+
 /* Puts marks, if the region has any, in the place of a layer's amounts. */
 static bool lay_marks(const FlLayer *layer, const FlComposeInput *input,
                       const FlPaintedRegion *painted, int16_t *amounts, GError **error)
 {
     const FlMarks marks = marks_of(painted);
     const char *fill = fl_drawing_region(input->drawing, painted->region)->paint;
-    const FlMarking marking = {marks,           (float)painted->settings->marks_angle,
-                               painted->anchor, input->tooth,
-                               input->paper_px, fl_key(input->seed, g_str_hash(fill))};
+    const FlMarking marking = {.marks = marks,
+                               .angle = angle_of_marks(painted),
+                               .directions = input->directions,
+                               .anchor = painted->anchor,
+                               .tooth = input->tooth,
+                               .paper_px = input->paper_px,
+                               .key = fl_key(input->seed, g_str_hash(fill))};
     return marks <= FL_MARKS_OFF ||
            fl_marks_lay(&marking, &layer->area, (FlRect){0, 0, input->width, input->height},
                         layer->coverage, amounts, error);

@@ -68,8 +68,7 @@ static void find_passes(const FlWashField *field, const Places *at, Values value
     noise_at(fl_key(key, 3), at, fine, 0, 1, 1, waver[2]);
     noise_at(fl_key(wash->key, KEY_CRISP), at, cell, 0, 1, 1, values[FL_WASH_CRISP]);
     for (int i = 0; i < at->n; i++) {
-        const float across =
-            .9f * at->y[i] + (.1f * field->light[0] - .35f * field->light[1]) * at->x[i];
+        const float across = field->across[1] * at->y[i] + field->across[0] * at->x[i];
         values[FL_WASH_PASS][i] =
             across / wash->brush_px + .55f * waver[0][i] + .10f * waver[1][i] + .025f * waver[2][i];
         values[FL_WASH_CRISP][i] = fl_smooth((values[FL_WASH_CRISP][i] + .05f) / .3f);

@@ -92,6 +92,20 @@ static void add_region(FlWashField *field, int region)
     }
 }
 
+/* Passes lie across the light's slope, or as an image of directions has it where the first of the
+ * regions was first seen. */
+static void find_across(FlWashField *field)
+{
+    const FlAnchor *at = &field->wash->painted->anchor;
+    float *across = field->across;
+    across[0] = .1f * field->light[0] - .35f * field->light[1], across[1] = .9f;
+    if (!field->input->directions.image)
+        return;
+    const float angle = fl_direction_at(&field->input->directions, at->rest_x, at->rest_y, at->side,
+                                        atan2f(-across[0], across[1]));
+    across[0] = -sinf(angle), across[1] = cosf(angle);
+}
+
 static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input,
                       const FlDrawList *draws, GError **error)
 {
@@ -108,6 +122,7 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
     field.wash->brush_px = fl_clamp(.31f * field.size, 34, 95);
     const float angle = (float)(field.wash->painted->settings->light * G_PI / 180);
     field.light[0] = cosf(angle), field.light[1] = sinf(angle);
+    find_across(&field);
     const bool made = fl_field_alloc(&field, error);
     if (made) {
         fl_field_fill_masks(&field, washes, w, draws);

@@ -58,6 +58,7 @@ typedef struct FlAnchor {
     float x, y;           // px of the picture, within FL_POSE_MOST_PX
     float cosine, sine;   // of its turn since the first frame
     float rest_x, rest_y; // where it was in that, the first that has the region
+    float axis;           // direction of the longer side in that, degrees; NAN: it is round
     float side;           // of a square as large as the region's shapes, px; the same in all frames
 } FlAnchor;
 

@@ -41,6 +41,12 @@ typedef struct Fit {
     double most;  // that the turn could be
 } Fit;
 
+/* The region in the first frame that has it. */
+typedef struct Begin {
+    Means means;
+    double spread[3]; // about the page's corner: as in FlPose, times the weight
+} Begin;
+
 /* The follower of a film's regions. */
 typedef struct Follower {
     int n_regions;
@@ -48,7 +54,7 @@ typedef struct Follower {
     int *first;    // index of each region's first leaf
     Leaf *leaf;
     Fit *fit;     // of each region
-    Means *begin; // of each region, in the first frame that has it
+    Begin *begin; // of each region
     bool *begun;  // true after that frame
     bool *limbs;  // true if some of its limbs move apart from it
 } Follower;
@@ -266,17 +272,42 @@ static void count_leaves(Follower *f, const FlSurvey *survey, int n_leaves)
 static void add_beginning(Follower *f, const FlSurveyPart *part)
 {
     const FlPoint middle = middle_of(part, part->pose.n > 0);
-    if (!f->begun[part->region])
-        add_means(&f->begin[part->region], weight_of(part), middle, middle);
+    const double weight = weight_of(part);
+    Begin *begin = &f->begin[part->region];
+    if (f->begun[part->region])
+        return;
+    add_means(&begin->means, weight, middle, middle);
+    begin->spread[0] += weight * ((double)part->pose.spread[0] + middle.x * middle.x);
+    begin->spread[1] += weight * ((double)part->pose.spread[1] + middle.y * middle.y);
+    begin->spread[2] += weight * ((double)part->pose.spread[2] + middle.x * middle.y);
+}
+
+#define LONG 1.35 // times as long as it is wide: such a shape has an axis
+
+/* The direction in which a region is longest, degrees; NAN if it is hardly longer than wide. */
+static float axis_of(const Begin *begin)
+{
+    const FlPoint middle = mean_of(&begin->means, begin->means.to);
+    const double weight = begin->means.weight;
+    const double xx = begin->spread[0] / weight - middle.x * middle.x;
+    const double yy = begin->spread[1] / weight - middle.y * middle.y;
+    const double xy = begin->spread[2] / weight - middle.x * middle.y;
+    const double apart = sqrt((xx - yy) * (xx - yy) + 4 * xy * xy);
+    const double most = (xx + yy + apart) / 2, least = (xx + yy - apart) / 2;
+    return most > LONG * LONG * MAX(least, 1e-6) ? (float)(90 / G_PI * atan2(2 * xy, xx - yy))
+                                                 : NAN;
 }
 
 static void begin(Follower *f, int region, FlAnchor *anchor)
 {
-    const Means *means = &f->begin[region];
+    const Means *means = &f->begin[region].means;
     if (f->begun[region] || means->weight <= 0)
         return;
     const FlPoint middle = mean_of(means, means->to);
-    *anchor = (FlAnchor){.x = within(middle.x), .y = within(middle.y), .cosine = 1};
+    *anchor = (FlAnchor){.x = within(middle.x),
+                         .y = within(middle.y),
+                         .cosine = 1,
+                         .axis = axis_of(&f->begin[region])};
     anchor->rest_x = anchor->x, anchor->rest_y = anchor->y;
     f->begun[region] = true;
 }
@@ -306,7 +337,7 @@ static void begin_limb(FlAnchor *limb, const FlAnchor *region, FlPoint middle)
 {
     const FlPoint rest = at_rest(region, middle);
     *limb = (FlAnchor){within(middle.x), within(middle.y), region->cosine, region->sine,
-                       within(rest.x),   within(rest.y),   region->side};
+                       within(rest.x),   within(rest.y),   region->axis,   region->side};
 }
 
 /* Returns: true if a limb is elsewhere than its region has it. */
@@ -391,7 +422,7 @@ FlAnchor **fl_region_anchors_find(const FlSurvey *survey, int n_regions, GArray 
     const int n_leaves = number_leaves(survey, n_regions, first);
     g_autofree Leaf *leaf = g_new0(Leaf, n_leaves + 1);
     g_autofree Fit *fit = g_new0(Fit, n_regions + 1);
-    g_autofree Means *begin = g_new0(Means, n_regions + 1);
+    g_autofree Begin *begin = g_new0(Begin, n_regions + 1);
     g_autofree bool *begun = g_new0(bool, n_regions + 1);
     g_autofree bool *strayed = g_new0(bool, n_regions + 1);
     Follower f = {

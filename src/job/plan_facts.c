@@ -164,6 +164,8 @@ FlFacts *fl_plan_facts(const FlPlan *plan)
     add_regions(facts, plan); // last of the drawing, so that a changed file is named as the cause
     if (paper && g_file_test(paper, G_FILE_TEST_IS_REGULAR))
         add_file(facts, plan->inputs, paper);
+    if (plan->options.directions)
+        add_file(facts, plan->inputs, plan->options.directions);
     add_painted(facts, plan);
     if (background && fl_picture_named(background))
         add_pattern(facts, plan, background, NULL);

@@ -147,7 +147,8 @@ void fl_inputs_add_options(FlInputs *inputs, const FlRenderOptions *options,
 {
     const char *background = options->background;
     const char *const patterns[] = {background && fl_picture_named(background) ? background : NULL,
-                                    options->flow, options->merge ? options->paint : NULL};
+                                    options->directions, options->flow,
+                                    options->merge ? options->paint : NULL};
     if (options->config)
         (void)list(inputs, options->config);
     if (options->paper && fl_picture_named(options->paper)) // no word for a paper

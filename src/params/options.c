@@ -104,6 +104,13 @@ const FlOption *fl_option_find_argument(const char *name)
     return NULL;
 }
 
+const char *fl_option_nan(const FlOption *option)
+{
+    return g_str_has_prefix(option->value, "axis|")   ? "axis"
+           : g_str_has_prefix(option->value, "auto|") ? "auto"
+                                                      : NULL;
+}
+
 bool fl_option_takes_value(const FlOption *option)
 {
     return *option->value && option->type != FL_OPTION_FLAG && option->type != FL_OPTION_SWITCH;
@@ -378,7 +385,7 @@ char *fl_option_get(const FlOption *option, const void *object)
         return number_text(MAX(*(const double *)field, 0));
     case FL_OPTION_DIAL:
     case FL_OPTION_FIXED:
-        return isnan(*(const double *)field) ? g_strdup("auto")
+        return isnan(*(const double *)field) ? g_strdup(fl_option_nan(option))
                                              : number_text(*(const double *)field);
     case FL_OPTION_WORD:
     case FL_OPTION_SWITCH:

@@ -105,6 +105,9 @@ bool fl_option_takes_value(const FlOption *option);
 /** The words that the value may be, such as "draft normal fine"; NULL: no word. To be freed. */
 char *fl_option_words(const FlOption *option);
 
+/** The word that stands for a number which is not given, such as auto; NULL: there is none. */
+const char *fl_option_nan(const FlOption *option);
+
 /** The line of the help, with words and default. To be freed. */
 char *fl_option_help(const FlOption *option);
 

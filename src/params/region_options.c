@@ -117,8 +117,8 @@ static bool set_detail(FlRegionSettings *settings, const char *form, const char 
 static bool set_dial(const FlOption *option, const char *value, double *field)
 {
     double number = NAN;
-    const bool is_auto = g_str_has_prefix(option->value, "auto|") && strcmp(value, "auto") == 0;
-    if (!is_auto &&
+    const char *word = fl_option_nan(option);
+    if (!(word && strcmp(value, word) == 0) &&
         (!fl_text_number(value, &number) || number < option->min || number > option->max))
         return false;
     *field = number;

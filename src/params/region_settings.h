@@ -101,7 +101,7 @@ typedef struct FlRegionSettings {
     double load, pigments; // older words: wash / 5 and hue / 72; NAN: not said
     FlPalette palette;
     FlMarks marks;      // FL_MARKS_AUTO: the style's
-    double marks_angle; // direction of the strokes, degrees; 90: down
+    double marks_angle; // direction of the strokes, degrees; 90: down; NAN: the shape's axis
     double front;       // fronts on the paper ahead of what moves, 0..2
     double stain;       // stains behind the front, 0..1
     double gaps;        // how far edges are off, 0..1

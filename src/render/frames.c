@@ -9,6 +9,7 @@
 #include "guides/half_guides.h"
 #include "inspect/dump.h"
 #include "inspect/ebsynth.h"
+#include "io/picture_file.h"
 #include "worker/messages.h"
 
 #define WET_IN_DRAFTS 3 // frames from which wet paper is known
@@ -171,6 +172,9 @@ static FlComposeInput compose_input(const FlFrames *frames, int frame)
                             .background = &frames->background,
                             .sheet = frames->sheet,
                             .tooth = fl_paper_sheet_tooth(frames->sheet, frame),
+                            .directions = {frames->directions,
+                                           (float)fl_drawing_width(plan->drawing),
+                                           (float)fl_drawing_height(plan->drawing)},
                             .seed = plan->options.seed,
                             .width = fl_drawing_width(plan->drawing),
                             .height = fl_drawing_height(plan->drawing),
@@ -333,6 +337,10 @@ bool fl_frames_check(FlFrames *frames, GError **error)
 {
     const FlPlan *plan = frames->plan;
     const uint8_t *ground = fl_paper_ground(plan->options.paper);
+    const char *directions = plan->options.directions;
+    g_clear_pointer(&frames->directions, fl_picture_free);
+    if (directions && !(frames->directions = fl_picture_read(directions, error)))
+        return false;
     return fl_background_init(&frames->background, plan->options.background,
                               ground ? ground : plan->paper, plan->drawing, error) &&
            (fl_plan_is_of_paint(plan) ? fl_paper_check(plan->options.paper, error)
@@ -459,6 +467,7 @@ void fl_frames_clear(FlFrames *frames)
     fl_wet_free(frames->wet);
     fl_motion_source_free(frames->motion);
     fl_paper_sheet_free(frames->sheet);
+    fl_picture_free(frames->directions);
     fl_plan_free(frames->old_plan);
     fl_plan_free(frames->plan);
     *frames = (FlFrames){0};

@@ -11,9 +11,10 @@
 typedef struct FlFrames {
     FlPlan *plan;
     FlBackground background;
-    FlPaperSheet *sheet; // NULL: none
-    FlDigest sheet_of;   // digest of all inputs of the sheet
-    FlPlan *old_plan;    // until the painters follow the plan; NULL: they do
+    FlPaperSheet *sheet;   // NULL: none
+    FlPicture *directions; // an image of the hand's directions; NULL: none
+    FlDigest sheet_of;     // digest of all inputs of the sheet
+    FlPlan *old_plan;      // until the painters follow the plan; NULL: they do
     FlPainters painters;
     FlWet *wet;                // the wet paper, which paint stains; NULL: paint leaves no stains
     FlMotionSource *motion;    // motion source of `wet`, if the painters have no motion source
