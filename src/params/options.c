@@ -337,10 +337,14 @@ void fl_option_copy(const FlOption *option, const FlRenderOptions *from, FlRende
 
 /* ---- options of a render or a region --------------------------------------------------------- */
 
+/* The shorter text, 0.8, where it reads back as the same number. */
 static char *number_text(double number)
 {
     char text[G_ASCII_DTOSTR_BUF_SIZE];
-    return g_strdup(g_ascii_dtostr(text, sizeof text, number));
+    g_ascii_formatd(text, sizeof text, "%.15g", number);
+    if (g_ascii_strtod(text, NULL) != number)
+        g_ascii_dtostr(text, sizeof text, number);
+    return g_strdup(text);
 }
 
 /* The n-th of words separated by bars; NULL after the last. */
