@@ -225,6 +225,13 @@ sys.exit(not eval(f"({sys.argv[2]})"))' "$1" "$2" 2>>err
 result $? '--list-regions --format json is JSON'
 "$program" --list-styles --format json >out 2>err && json out 'data[1]["name"] == "Ink" and len(data) >= 10'
 result $? 'so is --list-styles --format json'
+cp -r "$fixtures/style-small" own && printf '\n[region]\nengine = lazyfluids\n' >>own/style.ini
+engine() { "$program" whole -s ./own -f 1 -v --detail draft -o 'own/%d.png' -y "$@" 2>&1 >out | grep -c 'engine lazyfluids'; }
+[ "$(engine)" -gt 0 ] && [ "$(engine --engine patch)" = 0 ] && [ "$(engine --preset thesis)" = 0 ]
+result $? 'a style brings settings of its regions, and those of the user come after them'
+"$program" whole -s 01 --preset fluidymation --dry-run >out 2>err && grep -q 'narrower than the border of their preset' err &&
+    "$program" whole -s 01 --preset fluidymation --border 2 --dry-run >out 2>err && ! grep -q narrower err
+result $? 'a border that is all of a region is told'
 refuses 'a list in a format of pictures is refused' 2 '--format png: lists are written *' whole --list-regions --format png
 "$program" nowhere -s 01 --progress json >out 2>err
 [ $? = 1 ] && json err '"nowhere: no such" in data["error"]'

@@ -121,7 +121,7 @@ static void style_ini_values_are_taken(void)
                "# a comment\n[style]\nname = Ink\nauthor=A. Painter\nfps = 12.5\nborder = 9\n"
                "medium = opaque\npaper = #fed\nlicence=\nmade-by=recipe.ini\n"
                "missing-orientations = up, down\ngranulation = -0.5\n[recipe]\nsteps = 3\n"
-               "[front]\nwidth = 0\ngranulation = 0.75\n");
+               "[front]\nwidth = 0\ngranulation = 0.75\n[region]\nengine = lazyfluids\n");
     g_autoptr(FlStyle) style = fl_style_load(folder, &error);
     g_assert_no_error(error);
     g_assert_cmpstr(style->name, ==, "Ink");
@@ -138,6 +138,8 @@ static void style_ini_values_are_taken(void)
     g_assert_cmpfloat(style->front.granulation, ==, 0.75f);
     g_assert_cmpfloat(style->front.stain, ==, 0.42f); // not given
     g_assert_cmpuint(style->guessed, ==, FL_GUESS_MASK | FL_GUESS_FLOW);
+    g_autofree char *text = fl_manifest_text(style);
+    g_assert_true(g_str_has_suffix(text, "\n[region]\nengine = lazyfluids\n"));
     remove_folder(folder);
 }
 
@@ -156,6 +158,9 @@ static void a_mistake_in_style_ini_is_told_with_its_line(void)
         {"[style]\nfps\n", "style.ini:2: “fps” is neither “[section]” nor “key = value”"},
         {"[front]\nwidth = 2\n", "style.ini:2: width = 2: expected a number from 0 to 1"},
         {"[front]\nborder = 3\n", "style.ini:2: unknown key “border”: expected one of width"},
+        {"[region]\nengine = oil\n", "style.ini:2: engine: “oil”"},
+        {"[region]\nenigne = patch\n", "style.ini:2: unknown key “enigne”; did you mean"},
+        {"[region]\nstyle = ink\n", "style.ini:2: style: a style does not say that"},
         {"[frnt]\n", "style.ini:1: [frnt]: expected [front]"},
         {"fps = 3\n", "style.ini:1: “fps” stands above the first section"},
     };

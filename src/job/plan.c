@@ -44,7 +44,7 @@ static FlDigest digest_of_reading(const FlRenderOptions *options, const FlConfig
 static bool open_drawing(FlPlan *plan, const FlPlan *before, GError **error)
 {
     g_auto(FlRegionSettings) general = {0};
-    if (!fl_config_region_settings(plan->config, -1, "", &plan->options, &general, error))
+    if (!fl_config_region_settings(plan->config, -1, "", &plan->options, NULL, &general, error))
         return false;
     plan->hold = general.hold;
     plan->reading = digest_of_reading(&plan->options, plan->config);

@@ -115,6 +115,12 @@ bool fl_plan_find_hidden(FlPlan *plan, GError **error);
 /** Names the output and looks whether it is free, before the drawing is read. */
 bool fl_plan_find_output(FlPlan *plan, GError **error);
 
+/** The settings of a region; those that its style gives come before all others. Arguments and
+ * errors as of fl_config_region_settings(). */
+bool fl_plan_region_settings(const FlConfig *config, int rule, const char *region,
+                             const FlRenderOptions *options, FlRegionSettings *settings,
+                             GError **error);
+
 /** Chooses the regions that are painted and their settings; the drawing is open. */
 bool fl_plan_find_regions(FlPlan *plan, GError **error);
 

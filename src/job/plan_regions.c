@@ -6,6 +6,7 @@
 #include "io/png.h"
 #include "params/keys.h"
 #include "params/options.h"
+#include "style/style_folder.h"
 #include <string.h>
 
 static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
@@ -96,6 +97,21 @@ static bool choose_key(FlPlan *plan, FlRegionPlan *painted, int k, GError **erro
            fl_region_settings_set(&painted->settings, "style", style, NULL, error);
 }
 
+bool fl_plan_region_settings(const FlConfig *config, int rule, const char *region,
+                             const FlRenderOptions *options, FlRegionSettings *settings,
+                             GError **error)
+{
+    g_auto(FlOverrides) own = {0};
+    if (!fl_config_region_settings(config, rule, region, options, NULL, settings, error))
+        return false;
+    if (settings->style)
+        fl_style_settings(settings->style, &own);
+    if (own.n == 0)
+        return true;
+    fl_region_settings_clear(settings);
+    return fl_config_region_settings(config, rule, region, options, &own, settings, error);
+}
+
 /* Splits the region that was planned last into a painted region for each of its keyed styles. */
 static bool add_styles(FlPlan *plan, int region, GError **error)
 {
@@ -117,8 +133,8 @@ static bool add_styles(FlPlan *plan, int region, GError **error)
             break;
         painted->more = true;
         painted++;
-        if (!fl_config_region_settings(plan->config, r->rule, r->name, &plan->options,
-                                       &painted->settings, error))
+        if (!fl_plan_region_settings(plan->config, r->rule, r->name, &plan->options,
+                                     &painted->settings, error))
             return false;
         painted->region = region, painted->name = r->name;
         plan->n_painted++;
@@ -134,7 +150,7 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
     FlRegionSettings *settings = &chosen->settings;
     const bool left_out = is_left_out(plan, r->name);
     const int rule = fl_config_rule(plan->config, r->rule, r->name);
-    if (!fl_config_region_settings(plan->config, rule, r->name, &plan->options, settings, error))
+    if (!fl_plan_region_settings(plan->config, rule, r->name, &plan->options, settings, error))
         return false;
     const bool painted = r->paintable && settings->passthrough != FL_PASSTHROUGH_YES;
     plan->half &= !painted || settings->params.half_size;

@@ -48,6 +48,37 @@ static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GErro
                 style->path, style->ink->beyond);
 }
 
+/* The deepest pixel of a region, were it a disc: no shape of that area has a deeper one. */
+static double deepest(const FlRegionPlan *painted)
+{
+    return sqrt(painted->area_px / G_PI);
+}
+
+/* Warns, by the largest one, of regions that are border all over since the borders of their presets
+ * are in pixels: a larger page has room for an interior. */
+static bool warn_of_borders(const FlPlan *plan, GError **error)
+{
+    const FlRegionPlan *largest = NULL;
+    int n = 0;
+    for (const FlRegionPlan *p = plan->painted; p < plan->painted + plan->n_painted; p++) {
+        const FlParams *params = &p->settings.params;
+        if (params->style_by_page || params->border <= deepest(p))
+            continue;
+        n++;
+        if (!largest || deepest(p) > deepest(largest))
+            largest = p;
+    }
+    if (!largest || !(largest->area_px > 0))
+        return true;
+    const double border = (double)largest->settings.params.border;
+    return warn(plan, error,
+                "%d of %d regions are narrower than the border of their preset; the largest, “%s”, "
+                "has an interior from a width of %.0f px on, or with a ‘border’ below %.0f px",
+                n, plan->n_painted, largest->name,
+                ceil(fl_drawing_width(plan->drawing) * border / deepest(largest)),
+                ceil(deepest(largest)));
+}
+
 /* Px of the drawing as it is painted per px of a region's sizes. */
 static float texture_px(const FlPlan *plan, const FlParams *params)
 {
@@ -173,6 +204,8 @@ bool fl_plan_choose_styles(FlPlan *plan, GError **error)
     for (int p = 0; plan->surround && p < plan->n_painted; p++)
         if (!choose_style(plan, &plan->painted[p], error))
             return false;
+    if (!warn_of_borders(plan, error))
+        return false;
     note_older_preset(plan);
     memset(plan->paper, 255, sizeof plan->paper);
     if (plan->n_painted > 0 && plan->surround)

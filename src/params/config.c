@@ -359,11 +359,13 @@ static bool apply_settings(const FlRenderOptions *options, const char *region,
 }
 
 bool fl_config_region_settings(const FlConfig *config, int rule, const char *region,
-                               const FlRenderOptions *options, FlRegionSettings *settings,
-                               GError **error)
+                               const FlRenderOptions *options, const FlOverrides *first,
+                               FlRegionSettings *settings, GError **error)
 {
     g_assert(rule >= -1 && rule < config->n_rules);
     fl_region_settings_init(settings);
+    if (first)
+        fl_overrides_apply(first, settings);
     fl_overrides_apply(&config->defaults, settings);
     if (rule >= 0)
         fl_overrides_apply(&config->rules[rule].overrides, settings);

@@ -158,8 +158,11 @@ static bool read_key(void *data, const char *name, const char *value, int line, 
         return fl_fail(error, reader->section->mistake,
                        "“%s” stands above the first section: expected [%s]", name,
                        reader->section->name);
-    return reader->at == reader->n ||
-           fl_key_section_set(&reader->section[reader->at], name, value, error);
+    if (reader->at == reader->n)
+        return true;
+    FlKeySection *section = &reader->section[reader->at];
+    return section->take ? section->take(section->object, name, value, error)
+                         : fl_key_section_set(section, name, value, error) != NULL;
 }
 
 bool fl_key_sections_read(const char *path, FlKeySection *section, int n, GError **error)

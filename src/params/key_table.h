@@ -53,6 +53,8 @@ typedef struct FlKeySection {
     const FlKeyTable *table;
     void *object;               // the struct with the fields
     FlError mistake;            // the error code
+    /** Takes every key where there is no table; errors as of fl_key_section_set(). */
+    bool (*take)(void *object, const char *name, const char *value, GError **error);
     int n_values[FL_MOST_KEYS]; // of each key; 0: it is not given
 } FlKeySection;
 

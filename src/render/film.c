@@ -109,7 +109,7 @@ static bool check_setting(const FlSetting *setting, GError **error)
     g_auto(FlRegionSettings) settings = {0};
     g_autoptr(FlConfig) none = fl_config_load(NULL, NULL, error);
     return none && fl_config_region_settings(none, -1, setting->region ? setting->region : "",
-                                             &options, &settings, error);
+                                             &options, NULL, &settings, error);
 }
 
 /* The setting takes the place of an earlier one of the same name. */

@@ -77,14 +77,22 @@ static int compare_strings(const void *a, const void *b)
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-static void read_manifest(FlStyleEntry *entry)
+/* What the style.ini of a folder says; nothing if it is missing or broken. */
+static FlStyle *read_manifest(const char *folder)
 {
     g_autoptr(FlStyle) style = g_new0(FlStyle, 1);
-    g_autofree char *file = g_build_filename(entry->path, "style.ini", NULL);
-    if (g_file_test(file, G_FILE_TEST_EXISTS) && fl_manifest_read(style, file, NULL)) {
-        entry->title = g_steal_pointer(&style->name);
-        entry->character = g_steal_pointer(&style->character);
-    }
+    g_autofree char *file = g_build_filename(folder, "style.ini", NULL);
+    const bool read = g_file_test(file, G_FILE_TEST_EXISTS) && fl_manifest_read(style, file, NULL);
+    return read ? g_steal_pointer(&style) : g_new0(FlStyle, 1);
+}
+
+void fl_style_settings(const char *name, FlOverrides *settings)
+{
+    g_autofree char *folder = fl_style_find(name, NULL);
+    g_autoptr(FlStyle) style = folder ? read_manifest(folder) : NULL;
+    *settings = style ? style->settings : (FlOverrides){0};
+    if (style)
+        style->settings = (FlOverrides){0};
 }
 
 GPtrArray *fl_style_list(void)
@@ -104,7 +112,9 @@ GPtrArray *fl_style_list(void)
                 .path = g_build_filename(folders[i], name, NULL),
                 .hidden = !g_hash_table_add(seen, g_strdup(name)),
             };
-            read_manifest(entry);
+            g_autoptr(FlStyle) style = read_manifest(entry->path);
+            entry->title = g_steal_pointer(&style->name);
+            entry->character = g_steal_pointer(&style->character);
             g_ptr_array_add(entries, entry);
         }
     }

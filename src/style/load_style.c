@@ -23,6 +23,7 @@ void fl_style_free(FlStyle *style)
     g_free(style->character);
     g_free(style->made_by);
     g_free(style->missing_orientations);
+    fl_overrides_clear(&style->settings);
     free(style->rgb);
     free(style->mask);
     free(style->flow);

@@ -48,11 +48,23 @@ static const FlKeyTable style_table = {style_keys, G_N_ELEMENTS(style_keys)};
 const FlKeyTable fl_front_table = {front_keys, G_N_ELEMENTS(front_keys)};
 const FlKeyTable fl_wash_table = {wash_keys, G_N_ELEMENTS(wash_keys)};
 
+/* A setting of regions that have this style. */
+static bool take_setting(void *settings, const char *name, const char *value, GError **error)
+{
+    static const char *const others[] = {"style", "tile", "fluid", NULL};
+    g_autoptr(GError) reason = NULL;
+    if (g_strv_contains(others, name))
+        return fl_fail(error, FL_ERROR_STYLE, "%s: a style does not say that of its regions", name);
+    return fl_overrides_add(settings, name, value, &reason) ||
+           fl_fail(error, FL_ERROR_STYLE, "%s", reason->message);
+}
+
 bool fl_manifest_read(FlStyle *style, const char *path, GError **error)
 {
     FlKeySection sections[] = {{"style", &style_table, style, FL_ERROR_STYLE},
                                {"front", &fl_front_table, &style->front, FL_ERROR_STYLE},
-                               {"wash", &fl_wash_table, &style->wash, FL_ERROR_STYLE}};
+                               {"wash", &fl_wash_table, &style->wash, FL_ERROR_STYLE},
+                               {"region", NULL, &style->settings, FL_ERROR_STYLE, take_setting}};
     if (!fl_key_sections_read(path, sections, G_N_ELEMENTS(sections), error))
         return false;
     for (size_t i = 0; i < G_N_ELEMENTS(style_keys); i++)
@@ -78,5 +90,8 @@ char *fl_manifest_text(const FlStyle *style)
         g_string_append(text, "\n[wash]\n");
         fl_key_table_write(&fl_wash_table, &style->wash, NULL, 0, text);
     }
+    for (int k = 0; k < style->settings.n; k++)
+        g_string_append_printf(text, "%s%s = %s\n", k == 0 ? "\n[region]\n" : "",
+                               style->settings.override[k].key, style->settings.override[k].value);
     return g_string_free(text, FALSE);
 }

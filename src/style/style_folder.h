@@ -70,6 +70,7 @@ typedef struct FlStyle {
     float *flow;      // n_frames * height * width * 2, px per frame; NULL: to be constructed
     char *made_by;    // source of the frames, such as a recipe's file name; may be NULL
     char *missing_orientations; // directions that no outline faces, by style.ini; "none" or NULL
+    FlOverrides settings;       // of regions with this style, before all others
     unsigned guessed;           // FlGuess bits (manifest.h): values that are estimated
 } FlStyle;
 
@@ -93,6 +94,10 @@ FlStyle *fl_style_load(const char *folder, GError **error);
  * Returns: the folder; NULL with FL_ERROR_STYLE, which lists the names that are near.
  */
 char *fl_style_find(const char *name, GError **error);
+
+/** The settings that the style.ini of a style gives to its regions, to be cleared; none if there is
+ * no such style, or its style.ini is broken: who loads the style says so. */
+void fl_style_settings(const char *name, FlOverrides *settings);
 
 /** Returns: true if a folder contains a `frames` folder, which makes it a style. */
 bool fl_is_style(const char *folder);
