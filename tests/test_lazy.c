@@ -374,10 +374,16 @@ static void new_fluid_has_no_past(void)
     fl_kernels_init(&kernels, fl_cpu_flags());
     const FlFluidPast past = {.rgba = rgba, .mask = mask};
     g_auto(FlFluidPlanes) planes = {0};
-    g_assert_true(fl_fluid_planes_init(&planes, SIDE, SIDE, 0, FL_FLUID_PLANES, &error) &&
-                  fl_fluid_warp(&past, film.guides.mask, motion, 1, &kernels, &planes, &error));
-    g_assert_cmpfloat(planes.plane[FL_FLUID_PLANE_WEIGHT][36 * SIDE + 20], ==, 1);
-    g_assert_cmpfloat(planes.plane[FL_FLUID_PLANE_WEIGHT][36 * SIDE + 50], ==, 0);
+    g_assert_true(fl_fluid_planes_init(&planes, SIDE, SIDE, 0, FL_FLUID_PLANES, &error));
+    float *edge = planes.plane[FL_FLUID_PLANE_EDGE];
+    for (int p = 0; p < PIXELS; p++)
+        edge[p] = (float)film.guides.mask[p] / 255;
+    g_assert_true(fl_fluid_planes_blur(&planes, 3, &error) &&
+                  fl_fluid_warp(&past, 3, motion, 1, &kernels, &planes, &error));
+    const float *weight = planes.plane[FL_FLUID_PLANE_WEIGHT];
+    g_assert_cmpfloat(weight[36 * SIDE + 20], ==, 1);
+    g_assert_cmpfloat(weight[36 * SIDE + 50], ==, 0);
+    g_assert_cmpfloat(weight[36 * SIDE + 34], <, .2f); // the border of the past, now inside
 }
 
 static void motion_blur_keeps_what_rests_and_what_is_flat(void)

@@ -144,16 +144,18 @@ static bool blur_mask(FlLazy *lazy, const uint8_t *mask, GError **error)
 }
 
 /* The last output and field in the place where they are now; they go themselves. */
-static bool carry_past(FlLazy *lazy, const uint8_t *mask, GError **error)
+static bool carry_past(FlLazy *lazy, GError **error)
 {
     FlLazyState *last = &lazy->last;
-    if (!fl_fluid_warp(&last->past, mask, lazy->motion, last->frame, &lazy->kernels,
+    if (!fl_fluid_warp(&last->past, lazy->sigma_px, lazy->motion, last->frame, &lazy->kernels,
                        &lazy->level[0].planes, error))
         return false;
     g_clear_pointer(&last->past.rgba, free);
     if (!fl_nnf_init(&lazy->warm, lazy->width, lazy->height, error))
         return false;
-    fl_fluid_carry(&last->past.nnf, lazy->motion, &lazy->warm);
+    if (!fl_fluid_carry(&last->past.nnf, lazy->motion, &lazy->level[0].planes,
+                        &lazy->source.level[0].picture, &lazy->warm, error))
+        return false;
     if (!(lazy->params->motion_blur > 0))
         g_clear_pointer(&lazy->motion, free);
     return true;
@@ -177,7 +179,7 @@ static bool take_guides(FlLazy *lazy, FlGuides *guides, GError **error)
     fl_rest_shape(guides, &rule, shape, guides->width);
     if (guides->disposable)
         fl_guides_clear(guides);
-    if (!blur_mask(lazy, mask, error) || (lazy->last.valid && !carry_past(lazy, mask, error)))
+    if (!blur_mask(lazy, mask, error) || (lazy->last.valid && !carry_past(lazy, error)))
         return false;
     fl_lazy_state_forget(&lazy->last);
     lazy->last.past.mask = g_steal_pointer(&mask);

@@ -25,14 +25,21 @@ bool fl_lazy_motion(const FlGuides *guides, int reach, float *motion, GError **e
 
 /**
  * Fills the planes of the past, and the weight of the past: 1, but 0 where the mask has fluid and
- * the warped mask is empty (6), per pixel. Sampled by cubic splines at 1/16 px; `frame` decides
- * which way places are rounded, so that slow motions add up.
+ * the warped mask is empty (6), per pixel. It also falls where the border of the past, as masks
+ * blurred by sigma_px show it, has come into the interior: where fluid flows in, or shapes merge.
+ * The planes have the blurred mask. Sampled by cubic splines at 1/16 px; `frame` decides which way
+ * places are rounded, so that slow motions add up.
  */
-bool fl_fluid_warp(const FlFluidPast *past, const uint8_t *mask, const float *motion, int frame,
+bool fl_fluid_warp(const FlFluidPast *past, float sigma_px, const float *motion, int frame,
                    const FlKernels *kernels, FlFluidPlanes *planes, GError **error);
 
-/** The field carried along, to the nearest pixel; FL_NO_MATCH where the motion is unknown. Frames
- * are 0. */
-void fl_fluid_carry(const FlNnf *past, const float *motion, FlNnf *now);
+/**
+ * The field carried along, to the nearest pixel. Where the past counts by less than half, or its
+ * motion is unknown, the matches around are continued as far as the source has fluid there, so that
+ * what flows in goes on with the texture that flows away; else FL_NO_MATCH. Frames are 0. The planes
+ * have the blurred mask and the weight.
+ */
+bool fl_fluid_carry(const FlNnf *past, const float *motion, const FlFluidPlanes *planes,
+                    const FlFluidPicture *source, FlNnf *now, GError **error);
 
 #endif
