@@ -29,7 +29,7 @@ bl_info = {
 }
 
 STYLES = ['watercolour', 'ink', 'bloom', 'charcoal', 'wash', 'two-pigments', 'gouache', 'dry-brush',
-          'backruns', 'pastel', 'pools', 'smoke']
+          'backruns', 'pastel', 'pools', 'smoke', 'fire', 'billows', 'water']
 LINE_M = 0.001  # world size of a line's thickness of one
 
 
