@@ -36,8 +36,8 @@ bool fl_fluid_warp(const FlFluidPast *past, float sigma_px, const float *motion,
 /**
  * The field carried along, to the nearest pixel. Where the past counts by less than half, or its
  * motion is unknown, the matches around are continued as far as the source has fluid there, so that
- * what flows in goes on with the texture that flows away; else FL_NO_MATCH. Frames are 0. The planes
- * have the blurred mask and the weight.
+ * what flows in goes on with the texture that flows away; else FL_NO_MATCH. Frames are 0. The
+ * planes have the blurred mask and the weight.
  */
 bool fl_fluid_carry(const FlNnf *past, const float *motion, const FlFluidPlanes *planes,
                     const FlFluidPicture *source, FlNnf *now, GError **error);

@@ -51,8 +51,8 @@ char *fl_table_key_text(const FlTableKey *key, const void *object, int n, const 
 typedef struct FlKeySection {
     const char *name;
     const FlKeyTable *table;
-    void *object;               // the struct with the fields
-    FlError mistake;            // the error code
+    void *object;    // the struct with the fields
+    FlError mistake; // the error code
     /** Takes every key where there is no table; errors as of fl_key_section_set(). */
     bool (*take)(void *object, const char *name, const char *value, GError **error);
     int n_values[FL_MOST_KEYS]; // of each key; 0: it is not given

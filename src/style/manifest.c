@@ -1,5 +1,6 @@
 #include "style/manifest.h"
 
+#include "base/error.h"
 #include <string.h>
 
 /* A flag says which guess a value replaces. */

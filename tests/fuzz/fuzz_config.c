@@ -12,7 +12,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     FlRenderOptions options = {0};
     for (int r = -1; config && r < config->n_rules; r++) {
         g_auto(FlRegionSettings) settings = {0};
-        g_assert_true(fl_config_region_settings(config, r, "hair", &options, NULL, &settings, NULL));
+        g_assert_true(
+            fl_config_region_settings(config, r, "hair", &options, NULL, &settings, NULL));
     }
     fuzz_file_end(fd);
     return 0;
