@@ -70,7 +70,7 @@ static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
            1.4f * style->passes * slow[FL_WASH_LINES] *
                (.16f * load * (.5f + .5f * free) + .3f * ridge * free) +
            1.2f * style->tide *
-               (.46f * tide - .2f * slow[FL_WASH_TIDES] * fl_smooth(slow[FL_WASH_TIDE] / 34)) +
+               (.4f * tide - .16f * slow[FL_WASH_TIDES] * fl_smooth(slow[FL_WASH_TIDE] / 34)) +
            style->blooms * bloom_at(slow);
 }
 
