@@ -10,13 +10,12 @@ const int8_t fl_retrieval_steps[4][2] = {{-1, 0}, {0, -1}, {1, 0}, {0, 1}};
 
 void fl_retrieval_run_clear(FlRetrievalRun *run)
 {
-    void *const arrays[] = {run->place_at,   run->target,     run->cost,     run->won,
-                            run->warm,       run->warm_first, run->warm_end, run->is_free,
-                            run->open,       run->offer,      run->cell,     run->tile_places,
-                            run->tile_first, run->use,        run->left};
+    void *const arrays[] = {
+        run->place_at,   run->target,  run->cost, run->won,   run->warm,  run->warm_first,
+        run->warm_end,   run->is_free, run->open, run->offer, run->cell,  run->tile_places,
+        run->tile_first, run->use,     run->left, run->table, run->column};
     for (size_t k = 0; k < G_N_ELEMENTS(arrays); k++)
         free(arrays[k]);
-    fl_cost_table_clear(&run->table);
 }
 
 static void turn_init(FlSourceTurn *turn, int quarters, ptrdiff_t pitch)

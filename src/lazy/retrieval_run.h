@@ -2,7 +2,6 @@
 #ifndef FLUIDY_LAZY_RETRIEVAL_RUN_H
 #define FLUIDY_LAZY_RETRIEVAL_RUN_H
 
-#include "lazy/cost_table.h"
 #include "params/params.h"
 #include "synth/fluid_texel.h"
 #include "synth/nnf.h"
@@ -75,8 +74,10 @@ typedef struct FlRetrievalRun {
     uint32_t n_cells, quota, extra; // K, and the cells that may still be used K + 1 times
     uint32_t *tile_places, *tile_first;
     int tile_columns, n_tiles;
-    FlCostTable table;  // of the end, when few pairs are left; its costs are NULL until then
-    FlSourceLeft *left; // then: in the order of the sources
+    uint32_t *table;  // of the end, when few pairs are left: all costs, row by row; NULL until then
+    uint32_t *column; // its targets
+    uint32_t n_columns;
+    FlSourceLeft *left; // its rows, in the order of the sources
     uint32_t n_left;
     uint64_t pass_key;
     bool backwards; // the order of the pass

@@ -59,7 +59,7 @@ static void assign(FlRetrievalRun *run, const Winner *winner, FlNnf *nnf)
 /* Every target's best offer; then the sources whose offer it is. */
 static uint32_t find_winners(FlRetrievalRun *run, Winner *winners)
 {
-    const bool few = run->table.cost;
+    const bool few = run->table;
     const uint32_t sources = few ? run->n_left : run->n_sources;
     uint32_t n = 0;
     for (uint32_t k = 0; k < sources; k++) {
@@ -117,9 +117,9 @@ static void fill_row(FlRetrievalRun *run, uint32_t row)
     _Alignas(32) FlFluidTexel patch[FL_PATCH_PIXELS];
     const FlFluidPicture *picture = &run->in->target;
     fl_retrieval_gather(run, run->left[row].source, patch);
-    for (uint32_t j = 0; j < run->table.n_columns; j++)
-        run->table.cost[(size_t)row * run->table.n_columns + j] = run->in->distance(
-            patch, fl_retrieval_patch(picture, run->table.target[j]), picture->pitch, UINT32_MAX);
+    for (uint32_t j = 0; j < run->n_columns; j++)
+        run->table[(size_t)row * run->n_columns + j] = run->in->distance(
+            patch, fl_retrieval_patch(picture, run->column[j]), picture->pitch, UINT32_MAX);
 }
 
 /* All distances between the sources and the targets that are left. */
@@ -127,8 +127,11 @@ static bool make_table(FlRetrievalRun *run, uint32_t n_eligible, GError **error)
 {
     uint32_t n = 0;
     if (!(run->left = fl_alloc(n_eligible, sizeof *run->left, "distances", error)) ||
-        !fl_cost_table_init(&run->table, n_eligible, run->n_free, run->in->key, error))
+        !(run->column = fl_alloc(run->n_free, sizeof *run->column, "distances", error)) ||
+        !(run->table = fl_alloc_scratch((size_t)n_eligible * run->n_free, sizeof *run->table,
+                                        "distances", error)))
         return false;
+    run->n_columns = run->n_free;
     for (uint32_t s = 0; s < run->n_sources; s++)
         if (fl_retrieval_is_eligible(run, s)) {
             run->left[run->n_left] = (FlSourceLeft){s, run->n_left};
@@ -136,7 +139,7 @@ static bool make_table(FlRetrievalRun *run, uint32_t n_eligible, GError **error)
         }
     for (uint32_t k = 0; k < run->n_open; k++)
         if (fl_bit(run->is_free, run->open[k]))
-            run->table.target[n++] = run->open[k];
+            run->column[n++] = run->open[k];
 #pragma omp parallel for schedule(dynamic, 16) if (run->n_left > 64)
     for (uint32_t row = 0; row < run->n_left; row++)
         fill_row(run, row);
@@ -157,7 +160,7 @@ static bool open_pass(FlRetrievalRun *run, GError **error)
 {
     uint32_t n = 0;
     run->backwards = run->done->passes & 1;
-    if (!run->table.cost) {
+    if (!run->table) {
         for (uint32_t s = 0; s < run->n_sources; s++)
             n += fl_retrieval_is_eligible(run, s);
         compact_open(run);
@@ -170,23 +173,38 @@ static bool open_pass(FlRetrievalRun *run, GError **error)
     return true;
 }
 
+/* Proposes to the free target that is nearest to a source, of equals to one by hash. */
+static void propose_nearest(FlRetrievalRun *run, FlSourceLeft left)
+{
+    const uint32_t *cost = run->table + (size_t)left.row * run->n_columns;
+    const uint32_t key = (uint32_t)run->in->key ^ fl_hash32(left.row);
+    int32_t best = FL_NO_TARGET;
+    uint32_t least = UINT32_MAX;
+    for (uint32_t k = 0; k < run->n_columns; k++) {
+        const uint32_t target = run->column[k];
+        if (cost[k] > least || !fl_bit(run->is_free, target))
+            continue;
+        if (best == FL_NO_TARGET || cost[k] < least ||
+            fl_hash32(target ^ key) < fl_hash32((uint32_t)best ^ key))
+            best = (int32_t)target, least = cost[k];
+    }
+    run->target[left.source] = best, run->cost[left.source] = least;
+}
+
 static void propose_by_table(FlRetrievalRun *run)
 {
 #pragma omp parallel for schedule(dynamic, 64) if (run->n_left > 256)
-    for (uint32_t k = 0; k < run->n_left; k++) {
-        const FlSourceLeft *left = &run->left[k];
-        const FlOffer offer = fl_cost_table_nearest(&run->table, left->row, run->is_free);
-        run->target[left->source] = (int32_t)offer.target, run->cost[left->source] = offer.cost;
-    }
+    for (uint32_t k = 0; k < run->n_left; k++)
+        propose_nearest(run, run->left[k]);
 }
 
 static bool pass(FlRetrievalRun *run, Winner *winners, FlNnf *nnf, GError **error)
 {
     if (!open_pass(run, error))
         return false;
-    for (int sweep = 0; sweep < (run->table.cost ? 1 : run->in->sweeps); sweep++) {
+    for (int sweep = 0; sweep < (run->table ? 1 : run->in->sweeps); sweep++) {
         run->pass_key = fl_key(fl_key(run->in->key, (uint64_t)run->done->passes), (uint64_t)sweep);
-        if (run->table.cost)
+        if (run->table)
             propose_by_table(run);
         else
             fl_propose_all(run);
