@@ -1,4 +1,4 @@
-#include "svg/branch.h"
+#include "svg/passes.h"
 
 #define FEW 24 // children that a group may have; 12 to 48 take the same time with 8000 shapes
 

@@ -1,4 +1,4 @@
-#include "svg/filter_background.h"
+#include "svg/passes.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "svg/fonts.h"
+#include "svg/passes.h"
 
 #include "base/digest.h"
 #include "svg/document.h"

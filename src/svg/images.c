@@ -1,4 +1,4 @@
-#include "svg/images.h"
+#include "svg/passes.h"
 
 #include "base/file.h"
 #include "base/limits.h"

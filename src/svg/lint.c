@@ -1,4 +1,4 @@
-#include "svg/lint.h"
+#include "svg/passes.h"
 
 #include "svg/css_colour.h"
 #include "svg/path_data.h"

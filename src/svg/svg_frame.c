@@ -1,15 +1,11 @@
 #include "svg/svg_frame.h"
 
 #include "base/error.h"
-#include "svg/branch.h"
 #include "svg/cascade.h"
-#include "svg/filter_background.h"
-#include "svg/fonts.h"
-#include "svg/images.h"
 #include "svg/inner_frames.h"
 #include "svg/layer_frames.h"
-#include "svg/lint.h"
 #include "svg/normalise.h"
+#include "svg/passes.h"
 #include "svg/svg_data.h"
 #include <math.h>
 

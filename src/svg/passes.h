@@ -1,0 +1,60 @@
+/* The passes over a document between the cascade and its leaves. */
+#ifndef FLUIDY_SVG_PASSES_H
+#define FLUIDY_SVG_PASSES_H
+
+#include "svg/document.h"
+
+/* ---- what librsvg draws differently, or must not read ---------------------------------------- */
+
+/**
+ * Adds a warning for each trap in the document, and mends two: a reference with a page address or
+ * escapes, url(page.html#a), becomes url(#a) if the document has that id, and a gradient in HTML a
+ * rectangle of its mean colour.
+ */
+void fl_lint(xmlDoc *doc, const char *path, int number, FlWarnings *warnings);
+
+/**
+ * Checks every <image> and <feImage> of a document without decoding its pixels. Warns about those
+ * that librsvg will not show: files that are missing or outside the drawing's folder, by whatever
+ * path or symbolic link, and network addresses. References of any element to pipes and devices are
+ * removed. The real paths of files that exist are added to `files`, see g_ptr_array_new().
+ *
+ * Returns: false with FL_ERROR_LIMIT set if an image has too many pixels.
+ */
+bool fl_images_check(xmlDoc *doc, const char *path, int number, GPtrArray *files,
+                     FlWarnings *warnings, GError **error);
+
+/* ---- filters that read the backdrop, as old versions of Inkscape wrote them ------------------ */
+
+/**
+ * Removes BackgroundImage and BackgroundAlpha from filters, since each shape is drawn by itself
+ * over a transparent page: a filter that only blends with the backdrop becomes mix-blend-mode of
+ * its element; for others the backdrop is empty, with a warning.
+ */
+void fl_document_drop_background(xmlDoc *doc, const char *path, int number, FlWarnings *warnings);
+
+/** Returns: true if fl_document_drop_background() would change the document. */
+bool fl_document_reads_background(const xmlDoc *doc);
+
+/* ---- the fonts of its text ------------------------------------------------------------------- */
+
+/**
+ * Adds to `files` the font files from which the document's text may be drawn: for each family that
+ * it asks for, upright and slanted, regular and bold, the first fonts of fontconfig's order that
+ * have its letters. Adds the folders of fonts, too, since one that is installed may come first.
+ * Documents without text are left alone. Styles are computed, see svg/cascade.h; any thread.
+ */
+void fl_fonts_add(xmlDoc *doc, GPtrArray *files);
+
+/* ---- groups with many children --------------------------------------------------------------- */
+
+/**
+ * Puts the children of groups that have many into nested groups of a few each. To render one shape,
+ * librsvg visits all its siblings and those of each group around. For n shapes in one row that is n
+ * * n visits, in a tree n log n.
+ *
+ * The picture is the same, since the document has no style sheets, which could match the groups.
+ */
+void fl_document_branch(xmlDoc *doc);
+
+#endif
