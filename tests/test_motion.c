@@ -460,8 +460,8 @@ static void motion_is_into_the_frame(void)
 static void bars_that_change_places(GString *out, int t)
 {
     for (int k = 0; k < 2; k++)
-        g_string_append_printf(out, "<path fill='" RED "' d='M%d 50h40v70h-40z'/>",
-                               (k + t) % 2 ? 40 : 80);
+        g_string_append_printf(out, "<path id='bar%c' fill='" RED "' d='M%d 50h40v70h-40z'/>",
+                               'a' + k, (k + t) % 2 ? 40 : 80);
 }
 
 /** Whether region 0 rests from a frame to another, whose masks have one outline if they are alike.

@@ -1,8 +1,9 @@
 #include "drawing/correspondence.h"
 
-#include "drawing/pairing.h"
+#include "drawing/leaf_measure.h"
 #include "drawing/samples.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define STILL_PX 0.02   // outlines that differ by less are where they were
@@ -367,6 +368,49 @@ static Count *count_leaves(const Work *w)
     return count;
 }
 
+/** A leaf of a region and its number there, by which frames have it in common. */
+typedef struct Place {
+    int region, nth, leaf;
+} Place;
+
+static int compare_tracks(const Place *a, const Place *b)
+{
+    return a->region != b->region ? a->region - b->region : a->nth - b->nth;
+}
+
+/** Leaves of one number, as merged regions have them, stay in paint order. */
+static int compare_places(const void *x, const void *y)
+{
+    const Place *a = x, *b = y;
+    const int order = compare_tracks(a, b);
+    return order ? order : a->leaf - b->leaf;
+}
+
+/** The places of n leaves in order; to be freed. */
+static Place *places_of(const FlLeafFill *fill, int n)
+{
+    Place *place = g_new(Place, n + 1);
+    for (int i = 0; i < n; i++)
+        place[i] = (Place){fill[i].region, fill[i].nth, i};
+    qsort(place, (size_t)n, sizeof *place, compare_places);
+    return place;
+}
+
+/** Pairs the leaves that the identity of regions follows from frame to frame. */
+static void pair_leaves(const FlTwoFrames *f, FlCorrespondence *out)
+{
+    const int n = f->before->n_leaves, m = f->now->n_leaves;
+    g_autofree Place *before = places_of(f->before_fill, n), *now = places_of(f->now_fill, m);
+    for (int j = 0; j < m; j++)
+        out->leaf[j].before = -1;
+    for (int i = 0, j = 0; i < n && j < m;) {
+        const int order = compare_tracks(&before[i], &now[j]);
+        if (order == 0 && now[j].region >= 0)
+            out->leaf[now[j].leaf].before = before[i].leaf;
+        i += order <= 0, j += order >= 0;
+    }
+}
+
 FlCorrespondence *fl_correspond(const FlTwoFrames *frames)
 {
     const int n = frames->now->n_leaves;
@@ -376,9 +420,7 @@ FlCorrespondence *fl_correspond(const FlTwoFrames *frames)
     g_autofree FlLeafMeasure *before = fl_measure_leaves(frames->before);
     g_autofree FlLeafMeasure *now = fl_measure_leaves(frames->now);
     Work w = {frames, before, now, out};
-    g_autofree int *partner = fl_pair_leaves(frames, before, now);
-    for (int i = 0; i < n; i++)
-        out->leaf[i].before = partner[i];
+    pair_leaves(frames, out);
     g_autofree Count *count = count_leaves(&w);
     for (int i = 0; i < n; i++)
         settle(&w, i, &count[frames->now_fill[i].region + 1]);

@@ -38,9 +38,9 @@ typedef struct FlTwoFrames {
 } FlTwoFrames;
 
 /**
- * Pairs the leaves within each region, in paint order as far as there is one, by id, labels, paint,
- * structure, place and size, and finds how each moved. A leaf that moves by more than half its size
- * and a twentieth of the frame is paired only if its structure and its name are the same.
+ * Pairs the leaves that have the same number in their region, see FlLeafFill.nth, and finds how
+ * each moved. A leaf that moves by more than half its size and a twentieth of the frame has no
+ * known motion unless its structure is the same, and its name or its region, in which it is alone.
  *
  * The rotation of a round leaf is that of the leaves of its group inside it, if there are any.
  */

@@ -16,6 +16,7 @@
 #define SUBTLE 12.0f  // for one of the same class, or at the same place in the picture alone
 #define SLIGHT 4.0f   // for a flat one with none of these: its colour jitters
 #define OVERLAP 0.6f  // of boxes at the same place in the picture, intersection over union
+#define STAYS 0.9f    // of boxes of a leaf that need not be compared with others
 #define TOO_MANY 4000 // unpaired leaves on a side; beyond that only exact matches are followed
 
 typedef struct Pair {
@@ -32,7 +33,7 @@ static float overlap(const float a[4], const float b[4])
     return both / ((a[2] - a[0]) * (a[3] - a[1]) + (b[2] - b[0]) * (b[3] - b[1]) - both);
 }
 
-/** Likeness of two leaves, 0 … 8; -1 if they cannot be the same. */
+/** Likeness of two leaves, 0 … 10; -1 if they cannot be the same. */
 static float likeness(const FlSurveyPart *a, const FlSurveyPart *b)
 {
     const bool same_paint = a->paint == b->paint, same_tree = a->tree == b->tree;
@@ -47,8 +48,9 @@ static float likeness(const FlSurveyPart *a, const FlSurveyPart *b)
                                                                    : 0;
     if (!same_paint && (difference > most || most <= 0))
         return -1;
-    return (float)(2 * same_paint + same_tree + same_name + same_class) + 2 * shared +
-           (1 - MIN(difference, GRADUAL) / GRADUAL);
+    const bool same_nodes = a->pose.n == b->pose.n;
+    return (float)(2 * (same_paint + same_name) + same_tree + same_class + same_nodes) +
+           2 * shared + (1 - MIN(difference, GRADUAL) / GRADUAL);
 }
 
 static int compare_pairs(const void *x, const void *y)
@@ -108,8 +110,9 @@ static gboolean exact_equal(gconstpointer p, gconstpointer q)
            a->thick == b->thick && a->labels == b->labels && a->part == b->part;
 }
 
-/** Continues tracks by leaves that kept place and paint. */
-static void pair_exactly(Follow *f, int t, int *row)
+/** Continues tracks by leaves that kept paint and place in the document, and whose box overlaps as
+ * much as that. */
+static void pair_exactly(Follow *f, int t, float least, int *row)
 {
     g_autoptr(GHashTable) known = g_hash_table_new(exact_hash, exact_equal);
     for (guint k = 0; k < f->tracks->len; k++)
@@ -120,9 +123,12 @@ static void pair_exactly(Follow *f, int t, int *row)
     for (guint i = 0; i < parts->len; i++)
         found[i] =
             GPOINTER_TO_INT(g_hash_table_lookup(known, &g_array_index(parts, FlSurveyPart, i)));
-    for (guint i = 0; i < parts->len; i++)
-        if (found[i] && g_array_index(f->tracks, FlTrack, found[i] - 1).last_frame < t)
+    for (guint i = 0; i < parts->len; i++) {
+        const FlTrack *track = found[i] ? &g_array_index(f->tracks, FlTrack, found[i] - 1) : NULL;
+        const float *box = g_array_index(parts, FlSurveyPart, i).box;
+        if (row[i] < 0 && track && track->last_frame < t && overlap(track->last.box, box) >= least)
             follow_on(f, t, (int)i, found[i] - 1, row);
+    }
 }
 
 /** Pairs the remaining leaves, the most alike first. */
@@ -133,6 +139,8 @@ static void pair_by_likeness(Follow *f, int t, int *row)
     int left = 0;
     for (guint i = 0; i < parts->len; i++)
         left += row[i] < 0;
+    if (left >= TOO_MANY)
+        pair_exactly(f, t, 0, row);
     for (guint k = 0; k < f->tracks->len && left > 0 && left < TOO_MANY; k++) {
         const FlTrack *track = &g_array_index(f->tracks, FlTrack, k);
         for (guint i = 0; i < parts->len && track->last_frame < t; i++) {
@@ -168,7 +176,7 @@ GArray *fl_leaf_tracks_find(const FlSurvey *survey, const int *label_of, int ***
         int *row = (*track_of)[t] = g_new(int, n + 1);
         for (guint i = 0; i < n; i++)
             row[i] = -1;
-        pair_exactly(&f, t, row);
+        pair_exactly(&f, t, STAYS, row);
         pair_by_likeness(&f, t, row);
         for (guint i = 0; i < n; i++)
             if (row[i] < 0)

@@ -53,8 +53,10 @@ FlLeafFill *fl_drawing_leaf_fills(const FlDrawing *drawing, int frame, const FlO
         for (guint k = 0; k < list->len; k++) {
             const FlRegionLeaf *leaf = &g_array_index(list, FlRegionLeaf, k);
             if (fill[leaf->leaf].region < 0)
-                fill[leaf->leaf] = (FlLeafFill){
-                    f->step[i].region, leaf->flat, {leaf->rgb[0], leaf->rgb[1], leaf->rgb[2]}};
+                fill[leaf->leaf] = (FlLeafFill){f->step[i].region,
+                                                f->step[i].nth,
+                                                leaf->flat,
+                                                {leaf->rgb[0], leaf->rgb[1], leaf->rgb[2]}};
         }
     }
     return fill;

@@ -24,6 +24,7 @@ GArray *fl_drawing_region_leaves(const FlDrawing *drawing, int frame, int region
 /** The region and the paint of a leaf, by its first part. */
 typedef struct FlLeafFill {
     int region; // -1: it is not drawn
+    int nth;    // of the region's leaves in the film: the same leaf has one number in all frames
     bool flat;
     uint8_t rgb[3];
 } FlLeafFill;

@@ -1,4 +1,4 @@
-#include "drawing/pairing.h"
+#include "drawing/leaf_measure.h"
 
 #include "base/modes.h"
 #include "drawing/samples.h"
