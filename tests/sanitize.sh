@@ -36,7 +36,7 @@ address)
     meson test -C "$build" --no-rebuild --no-suite headers --timeout-multiplier 6 --print-errorlogs
     ;;
 bare)
-    make_build --werror -Dopenmp=disabled -Dsimd=disabled -Dexr=disabled -Dora=disabled -Dsandbox=disabled -Dserve=disabled -Dman=disabled
+    make_build --werror -Dopenmp=disabled -Dsimd=disabled -Dexr=disabled -Dora=disabled -Dwebp=disabled -Dsandbox=disabled -Dserve=disabled -Dman=disabled
     ninja -C "$build"
     meson test -C "$build" --no-rebuild --suite unit --suite kernels --print-errorlogs
     ;;

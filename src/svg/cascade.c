@@ -439,14 +439,6 @@ static bool has_variable(const GArray *declarations)
     return false;
 }
 
-static const xmlNode *target_of_use(const Cascade *c, const xmlNode *use)
-{
-    g_autoptr(xmlChar) plain = fl_attribute(use, "href");
-    g_autofree char *foreign = plain ? NULL : fl_foreign_attribute(use, "href");
-    const char *href = plain ? (const char *)plain : foreign;
-    return href && *href == '#' ? g_hash_table_lookup(c->ids, href + 1) : NULL;
-}
-
 static bool needs_variables(Cascade *c, const xmlNode *node);
 
 /** Returns: true if what a <use> shows has a value with var(). */
@@ -469,7 +461,7 @@ static bool target_needs_variables(Cascade *c, const xmlNode *target)
 static bool needs_variables(Cascade *c, const xmlNode *node)
 {
     g_autoptr(GArray) matched = match(c, node);
-    const xmlNode *target = fl_is(node, "use") ? target_of_use(c, node) : NULL;
+    const xmlNode *target = fl_is(node, "use") ? fl_shown_by_use(node, c->ids) : NULL;
     bool found = target && target_needs_variables(c, target);
     for (guint i = 0; i < matched->len && !found; i++)
         found = has_variable(g_array_index(matched, const FlCssRule *, i)->declarations);
@@ -507,7 +499,7 @@ static void free_copy(void *node)
 /** Copies what is shown with variables, before it is rewritten. */
 static void keep_shown(Cascade *c, const xmlNode *node)
 {
-    const xmlNode *target = fl_is(node, "use") ? target_of_use(c, node) : NULL;
+    const xmlNode *target = fl_is(node, "use") ? fl_shown_by_use(node, c->ids) : NULL;
     if (target && !g_hash_table_contains(c->shown, target) && target_needs_variables(c, target))
         g_hash_table_insert(c->shown, (gpointer)target, copy_linked(target));
     for (const xmlNode *child = node->children; child; child = child->next)
@@ -518,7 +510,7 @@ static void keep_shown(Cascade *c, const xmlNode *node)
 /** Makes a <use> a group with a copy of what it shows, if that has variables. */
 static void show_with_variables(Cascade *c, xmlNode *use, Style *style)
 {
-    const xmlNode *target = fl_is(use, "use") ? target_of_use(c, use) : NULL;
+    const xmlNode *target = fl_is(use, "use") ? fl_shown_by_use(use, c->ids) : NULL;
     const xmlNode *kept = target ? g_hash_table_lookup(c->shown, target) : NULL;
     int depth = 0;
     for (const Style *s = style; s && kept; s = s->around)

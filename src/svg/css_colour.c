@@ -438,8 +438,8 @@ static char *text_of(const Rgba *colour)
 
 bool fl_css_rgba(const char *text, uint8_t rgba[4])
 {
-    Rgba colour = {{0, 0, 0}, 0};
-    if (strcmp(text, "transparent") != 0 && !read_colour(text, &colour, 0))
+    Rgba colour;
+    if (!read_colour(text, &colour, 0))
         return false;
     for (int i = 0; i < 4; i++)
         rgba[i] = level_of(i < 3 ? colour.c[i] : colour.alpha);

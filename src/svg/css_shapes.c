@@ -69,18 +69,6 @@ static double attribute_length(const xmlNode *node, const char *name, const FlCs
     return text && fl_css_number(text, units, whole, &value) ? value : 0;
 }
 
-/** The element that a <use> shows; NULL if it is missing. */
-static const xmlNode *shown_by(const xmlNode *use)
-{
-    g_autoptr(xmlChar) plain = fl_attribute(use, "href");
-    g_autofree char *foreign = fl_foreign_attribute(use, "href");
-    const char *href = plain ? (const char *)plain : foreign;
-    if (!href || *href != '#')
-        return NULL;
-    g_autoptr(GHashTable) ids = fl_document_ids(use->doc);
-    return g_hash_table_lookup(ids, href + 1);
-}
-
 static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *units,
                         const FlAffine *map, int depth);
 
@@ -88,7 +76,8 @@ static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *u
 static void add_children(Bounds *bounds, const xmlNode *node, const FlCssUnits *units,
                          const FlAffine *map, int depth)
 {
-    const xmlNode *shown = fl_is(node, "use") ? shown_by(node) : NULL;
+    g_autoptr(GHashTable) ids = fl_is(node, "use") ? fl_document_ids(node->doc) : NULL;
+    const xmlNode *shown = ids ? fl_shown_by_use(node, ids) : NULL;
     const FlAffine place = {1,
                             0,
                             0,

@@ -54,6 +54,14 @@ char *fl_foreign_attribute(const xmlNode *node, const char *name)
     return NULL;
 }
 
+const xmlNode *fl_shown_by_use(const xmlNode *use, GHashTable *ids)
+{
+    g_autoptr(xmlChar) plain = fl_attribute(use, "href");
+    g_autofree char *foreign = plain ? NULL : fl_foreign_attribute(use, "href");
+    const char *href = plain ? (const char *)plain : foreign;
+    return href && *href == '#' ? g_hash_table_lookup(ids, href + 1) : NULL;
+}
+
 char *fl_property(const xmlNode *node, const char *name)
 {
     g_autoptr(xmlChar) style = fl_attribute(node, "style");

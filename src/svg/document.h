@@ -46,6 +46,10 @@ xmlChar *fl_attribute(const xmlNode *node, const char *name);
 /** An attribute with any prefix, be it declared or not, trimmed; NULL if absent. g_free(). */
 char *fl_foreign_attribute(const xmlNode *node, const char *name);
 
+/** The element of `ids`, see fl_document_ids(), that a <use> shows; NULL: it is in another file, or
+ * missing. */
+const xmlNode *fl_shown_by_use(const xmlNode *use, GHashTable *ids);
+
 /** Returns: true if node is an element of SMIL that animates another. */
 bool fl_is_animation(const xmlNode *node);
 

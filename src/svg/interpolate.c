@@ -3,7 +3,6 @@
 #include "svg/css_colour.h"
 #include "svg/transform.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* ---- easing ---------------------------------------------------------------------------------- */
@@ -157,35 +156,14 @@ static char *combine(const char *a, const char *b, double wa, double wb, double 
     return g_string_free(out, !same);
 }
 
-/** The parts of a colour that fl_css_colour() wrote; false for another paint. */
+/** The components of a colour, 0 … 255, and its opacity; false for another paint. */
 static bool colour_parts(const char *text, double v[4])
 {
-    g_autofree char *colour = fl_css_colour(text);
-    unsigned hex[4] = {0, 0, 0, 255};
-    int rgb[3];
-    if (!colour)
+    uint8_t rgba[4];
+    if (!fl_css_rgba(text, rgba))
         return false;
-    if (strcmp(colour, "transparent") == 0) {
-        memset(v, 0, 4 * sizeof *v);
-        return true;
-    }
-    v[3] = 1;
-    if (sscanf(colour, "rgb(%d, %d, %d", &rgb[0], &rgb[1], &rgb[2]) != 3) {
-        const char *alpha = strrchr(colour, ',');
-        const size_t n = strlen(colour);
-        if (sscanf(colour, "rgba(%d, %d, %d", &rgb[0], &rgb[1], &rgb[2]) == 3 && alpha)
-            v[3] = g_ascii_strtod(alpha + 1, NULL);
-        else if (*colour == '#' && n >= 7 &&
-                 sscanf(colour, "#%2x%2x%2x%2x", &hex[0], &hex[1], &hex[2], &hex[3]) >= 3)
-            rgb[0] = (int)hex[0], rgb[1] = (int)hex[1], rgb[2] = (int)hex[2], v[3] = hex[3] / 255.0;
-        else if (*colour == '#' && n >= 4 &&
-                 sscanf(colour, "#%1x%1x%1x", &hex[0], &hex[1], &hex[2]) == 3)
-            rgb[0] = (int)hex[0] * 17, rgb[1] = (int)hex[1] * 17, rgb[2] = (int)hex[2] * 17;
-        else
-            return false;
-    }
-    for (int i = 0; i < 3; i++)
-        v[i] = rgb[i];
+    for (int i = 0; i < 4; i++)
+        v[i] = i < 3 ? rgba[i] : rgba[i] / 255.0;
     return true;
 }
 

@@ -3,7 +3,6 @@
 #include "svg/css_colour.h"
 #include "svg/path_data.h"
 #include "svg/reference.h"
-#include <stdio.h>
 #include <string.h>
 
 typedef struct Lint {
@@ -126,16 +125,10 @@ static char *mean_colour(const char *arguments)
     int sum[3] = {0}, n = 0;
     for (int i = 0; stop[i]; i++) {
         g_auto(GStrv) word = fl_css_split(stop[i], ' ');
-        g_autofree char *colour = word[0] ? fl_css_colour(word[0]) : NULL;
-        int v[3];
-        if (!colour)
-            continue;
-        const bool read = sscanf(colour, "rgb(%d, %d, %d", &v[0], &v[1], &v[2]) == 3 ||
-                          sscanf(colour, "rgba(%d, %d, %d", &v[0], &v[1], &v[2]) == 3 ||
-                          sscanf(colour, "#%2x%2x%2x", (unsigned *)&v[0], (unsigned *)&v[1],
-                                 (unsigned *)&v[2]) == 3;
+        uint8_t rgba[4];
+        const bool read = word[0] && fl_css_rgba(word[0], rgba);
         for (int k = 0; k < 3 && read; k++)
-            sum[k] += v[k];
+            sum[k] += rgba[k];
         n += read;
     }
     return n ? g_strdup_printf("#%02x%02x%02x", sum[0] / n, sum[1] / n, sum[2] / n) : NULL;
