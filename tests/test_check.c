@@ -168,6 +168,37 @@ static void fronts_are_found_as_an_eye_does(void)
     g_assert_cmpfloat(ink.base, >, bloom.base + .3f);
 }
 
+/* Paint 16 px deep with noise, or with a few dots in it, whose hue wanders if it is asked to. */
+static FlWashEstimate wash_of(bool dots, double wander)
+{
+    g_autoptr(FlStyle) style = draw_style((Drop){.grow = 3, .x = 60});
+    uint8_t *last = style->rgb + 3 * PIXELS * (FRAMES - 1);
+    FlWashEstimate found;
+    for (int p = 0; p < PIXELS; p++) {
+        const int x = p % WIDTH, y = p / WIDTH;
+        const bool dot = hypot(x % 40 - 20, y % 45 - 22) < 5;
+        const double uneven = dots ? 25. * dot : 12 * sin(x * .42) * sin(y * .37 + .1 * x);
+        const double turn = wander * sin(x / 9.);
+        for (int c = 0; c < 3; c++)
+            last[3 * p + c] = (uint8_t)(last[3 * p + c] - uneven + (c - 1) * turn);
+    }
+    g_assert_true(fl_wash_estimate(style, 1, &found, NULL));
+    g_test_message("kurtosis %.1f, hue %.1f: calm %g, hue %g", (double)found.kurtosis,
+                   (double)found.hue, (double)found.wash.calm, (double)found.wash.hue);
+    return found;
+}
+
+static void noise_is_told_from_marks(void)
+{
+    const FlWashEstimate noise = wash_of(false, 0), marks = wash_of(true, 0),
+                         turned = wash_of(false, 20);
+    g_assert_cmpfloat(noise.wash.calm, >=, .8);
+    g_assert_cmpfloat(marks.wash.calm, <=, .3);
+    g_assert_cmpfloat(noise.hue, <, 1);
+    g_assert_cmpfloat(turned.hue, >, 4);
+    g_assert_cmpfloat(turned.wash.hue, >, noise.wash.hue);
+}
+
 static void one_picture_has_a_front(void)
 {
     const FlFrontStyle front = front_of("05", 1), all = front_of("05", 99);
@@ -187,6 +218,7 @@ int main(int argc, char **argv)
     g_test_add_func("/check/a-report-says-what-is-given-and-what-is-guessed",
                     a_report_says_what_is_given_and_what_is_guessed);
     g_test_add_func("/check/fronts-are-found-as-an-eye-does", fronts_are_found_as_an_eye_does);
+    g_test_add_func("/check/noise-is-told-from-marks", noise_is_told_from_marks);
     g_test_add_func("/check/one-picture-has-a-front", one_picture_has_a_front);
     return g_test_run();
 }

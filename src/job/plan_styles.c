@@ -169,17 +169,27 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     return true;
 }
 
-/* Names the preset that an older word chose, once. */
-static void note_older_preset(const FlPlan *plan)
+/* The option that a region names by an older word; NULL: by none. */
+static const char *older_word(const FlRegionSettings *settings)
 {
-    for (int p = 0; p < plan->n_painted; p++)
-        if (plan->painted[p].settings.older_preset) {
-            fl_tell(plan->options.note, plan->options.data,
-                    "region %s: the preset “fluid” is called “lazyfluids-steady” now; the older "
-                    "word goes with the next release",
-                    plan->painted[p].name);
-            return;
-        }
+    return settings->older_preset   ? "the preset “fluid” is called “lazyfluids-steady” now"
+           : !isnan(settings->load) ? "‘load’ is ‘wash’ now, which is five times as much"
+           : !isnan(settings->pigments) ? "‘pigments’ is ‘hue’ now, which is 72 times as much"
+                                        : NULL;
+}
+
+/* Names an older word once. */
+static void note_older_word(const FlPlan *plan)
+{
+    for (int p = 0; p < plan->n_painted; p++) {
+        const char *word = older_word(&plan->painted[p].settings);
+        if (!word)
+            continue;
+        fl_tell(plan->options.note, plan->options.data,
+                "region %s: %s; the older word goes with the next release", plan->painted[p].name,
+                word);
+        return;
+    }
 }
 
 double fl_plan_share_of_page(const FlPlan *plan, int region)
@@ -206,7 +216,7 @@ bool fl_plan_choose_styles(FlPlan *plan, GError **error)
             return false;
     if (!warn_of_borders(plan, error))
         return false;
-    note_older_preset(plan);
+    note_older_word(plan);
     memset(plan->paper, 255, sizeof plan->paper);
     if (plan->n_painted > 0 && plan->surround)
         memcpy(plan->paper, plan->painted[0].style->paper, sizeof plan->paper);

@@ -125,7 +125,22 @@ static void add_ages(Check *check)
         add(check->facts, "fresh      all frames: it does not dry in the recording");
 }
 
-static bool add_front(Check *check, GError **error)
+static bool add_wash(Check *check, float wet, GError **error)
+{
+    FlWashEstimate found;
+    if (!fl_wash_estimate(check->style, wet, &found, error))
+        return false;
+    if (found.kurtosis > 0)
+        add(check->facts,
+            "[wash]     calm %g, hue %g by the recording: kurtosis %.1f (noise: 3, scanned washes: "
+            "6 to 18), its hue wanders by %.1f",
+            (double)found.wash.calm, (double)found.wash.hue, (double)found.kurtosis,
+            (double)found.hue);
+    return true;
+}
+
+/* The numbers that import would write. */
+static bool add_estimates(Check *check, GError **error)
 {
     FlFrontStyle f;
     if (!fl_front_estimate(check->style, &f, error))
@@ -135,7 +150,7 @@ static bool add_front(Check *check, GError **error)
         "granulation %g by the recording",
         (double)f.width, (double)f.stain, (double)f.film, (double)f.soft, (double)f.base,
         (double)f.line, (double)f.fingers, (double)f.granulation);
-    return true;
+    return add_wash(check, f.width, error);
 }
 
 static void add_measured_facts(Check *check)
@@ -334,7 +349,7 @@ FlStyleReport *fl_style_check(const char *name, const char *sheet, bool overwrit
     g_autoptr(GPtrArray) problems = g_ptr_array_new_with_free_func(g_free);
     Check check = {style, measures, facts, problems};
     check_all(&check);
-    if (!moves_ink(style) && !add_front(&check, error))
+    if (!moves_ink(style) && !add_estimates(&check, error))
         return NULL;
     const FlCheckSheet drawing = {style, measures, guides, facts, problems};
     if (sheet && !fl_check_sheet_write(&drawing, sheet, error))

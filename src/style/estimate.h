@@ -34,6 +34,22 @@ bool fl_extract_masks(const FlClip *clip, const uint8_t paper[3], uint8_t *mask,
  */
 bool fl_front_estimate(const FlStyle *style, FlFrontStyle *front, GError **error);
 
+/** The unevenness that a recording has of its own, and the wash that goes with it. */
+typedef struct FlWashEstimate {
+    float kurtosis; // of the paint's lightness: 3 for noise, 6 and more for a few marks in quiet
+                    // places, as scanned washes have; 0: no paint is deep enough
+    float hue;      // wander of its colour, CIE76
+    FlWashStyle wash;
+} FlWashEstimate;
+
+/**
+ * Looks at the last frame. Noise of wet paint has to be calmed, marks must stay, and paint whose
+ * hue wanders is painted with one that does, since a tint loses the recording's. wet: width of its
+ * fronts. The defaults where an eighth of the frame or less is 16 px deep in paint.
+ * FL_ERROR_NO_MEMORY.
+ */
+bool fl_wash_estimate(const FlStyle *style, float wet, FlWashEstimate *found, GError **error);
+
 /** The mean coverage of a mask, 0..1. */
 double fl_mask_share(const uint8_t *mask, int width, int height);
 

@@ -286,6 +286,19 @@ static bool find_front(Import *import, GError **error)
     return true;
 }
 
+static bool find_wash(Import *import, GError **error)
+{
+    FlWashEstimate found;
+    if (!fl_wash_estimate(import->style, import->style->front.width, &found, error))
+        return false;
+    import->style->wash = found.wash;
+    if (found.kurtosis > 0)
+        note(import, "the paint is %s: a wash over it is calm by %g and its hue wanders by %g",
+             found.kurtosis < 4.5f ? "even noise" : "quiet with marks", (double)found.wash.calm,
+             (double)found.wash.hue);
+    return true;
+}
+
 static void add_warnings(const Import *import)
 {
     const FlStyleImport *options = import->options;
@@ -321,7 +334,7 @@ bool fl_style_import(const FlStyleImport *options, GPtrArray *notes, GError **er
         !fl_style_may_write(options->folder, options->overwrite, error) ||
         !read_all(&import, error) || !correct_frames(&import, error) ||
         !fl_style_check_paint(style, error) || !find_border(&import, error) ||
-        !find_front(&import, error))
+        !find_front(&import, error) || !find_wash(&import, error))
         return false;
     add_warnings(&import);
     return fl_style_write(style, options->folder, options->overwrite, error);
