@@ -1,5 +1,5 @@
 #include "lazy/lazy.h"
-#include "lazy/motion_blur.h"
+#include "lazy/lazy_state.h"
 #include "lazy/warp.h"
 #include "small_style.h"
 #include "style/adapt.h"

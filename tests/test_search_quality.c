@@ -7,7 +7,7 @@
  * pixel's own.
  */
 #include "small_style.h"
-#include "synth/energy.h"
+#include "synth/synth_levels.h"
 #include "synth/vote.h"
 #include <inttypes.h>
 

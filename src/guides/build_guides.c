@@ -11,7 +11,6 @@
  * The outline of one frame, the motion of an earlier one and the finish of a yet earlier one run in
  * parallel, since one region is often most of a film; they do not need each other's results.
  */
-#include "guides/build_guides.h"
 #include "base/alloc.h"
 #include "base/error.h"
 #include "guides/blur.h"
@@ -21,6 +20,7 @@
 #include "guides/extent.h"
 #include "guides/flow.h"
 #include "guides/gauss.h"
+#include "guides/guide_planes.h"
 #include "guides/plane_store.h"
 #include <math.h>
 #include <string.h>

@@ -54,4 +54,9 @@ bool fl_guide_sequence_shape(const FlGuideSequence *sequence, int frame, uint8_t
 bool fl_guide_sequence_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane plane,
                              int32_t *values, GError **error);
 
+/* ---- in build_guides.c ---- */
+
+/** Reads the masks and fills sequence->frames and spill, forwards, all but the extents to come. */
+bool fl_guide_sequence_build(FlGuideSequence *sequence, GError **error);
+
 #endif

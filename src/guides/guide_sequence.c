@@ -1,10 +1,10 @@
 #include "base/alloc.h"
 #include "base/error.h"
-#include "guides/build_guides.h"
 #include "guides/change_map.h"
 #include "guides/displacement.h"
 #include "guides/distance.h"
 #include "guides/extent.h"
+#include "guides/guide_planes.h"
 #include "guides/plane_store.h"
 #include <string.h>
 

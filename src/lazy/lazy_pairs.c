@@ -1,4 +1,4 @@
-#include "lazy/lazy_pairs.h"
+#include "lazy/lazy_state.h"
 
 #define SEGMENT_WEIGHT 100 // a patch of another segment is never taken
 

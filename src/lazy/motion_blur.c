@@ -1,4 +1,4 @@
-#include "lazy/motion_blur.h"
+#include "lazy/lazy_state.h"
 
 #include "base/alloc.h"
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "synth/energy.h"
+#include "synth/synth_levels.h"
 
 /* Params with all weights 0 and rotation off: with rotation off, a turned patch adds no cost. */
 static FlParams no_weights(const FlParams *params)

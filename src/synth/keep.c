@@ -1,4 +1,4 @@
-#include "synth/keep.h"
+#include "synth/carry.h"
 
 #include "base/alloc.h"
 #include "synth/rest.h"

@@ -3,6 +3,7 @@
 #define FLUIDY_SYNTH_SYNTH_LEVELS_H
 
 #include "synth/carry.h"
+#include "synth/patchmatch.h"
 #include "synth/synth_view.h"
 
 /** The finest level that is searched. Where it is not the finest of all, that one is the coarser
@@ -24,5 +25,21 @@ bool fl_synth_make_temporal(FlSynth *synth, const FlCarried *carried, GError **e
  * FL_ERROR_NO_MEMORY.
  */
 bool fl_synth_run_levels(FlSynth *synth, const FlNnf *shifted, FlFrameStats *stats, GError **error);
+
+/* ---- the energy of a field, term by term: for statistics, not for the search ---- */
+
+/** Means per pixel in the paper's units: each term with its weight [F21 eq. 1]. */
+typedef struct FlEnergy {
+    double texture, bound, ext, direction, temporal; // the data terms
+    double uniformity, coherence;
+} FlEnergy;
+
+/**
+ * The energy of search->nnf with the target's colours and T_temp as they are.
+ *
+ * `target` is search->target; its colours are blended anew for each term and once more at the end.
+ * costs: scratch, width * height. Takes about a fifth of a sweep's time.
+ */
+void fl_energy_of(const FlSearch *search, FlTargetLevel *target, uint32_t *costs, FlEnergy *energy);
 
 #endif
