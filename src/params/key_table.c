@@ -113,16 +113,20 @@ const FlTableKey *fl_key_section_set(FlKeySection *section, const char *name, co
                                      GError **error)
 {
     const int i = index_of(section, name);
-    const FlTableKey *key = i >= 0 ? &section->table->key[i] : NULL;
-    if (!key)
+    if (i < 0) {
         unknown(section, name, error);
-    else if (section->n_values[i] > 0)
+        return NULL;
+    }
+    const FlTableKey *key = &section->table->key[i];
+    if (section->n_values[i] > 0) {
         fl_fail(error, section->mistake, "%s is given a second time", name);
-    else if ((section->n_values[i] = fl_table_key_read(key, value, section->object)) < 0) {
-        g_autofree char *expected = fl_table_key_expects(key, value);
-        fl_fail(error, section->mistake, "%s = %s: expected %s", name, value, expected);
-    } else
+        return NULL;
+    }
+    section->n_values[i] = fl_table_key_read(key, value, section->object);
+    if (section->n_values[i] > 0)
         return key;
+    g_autofree char *expected = fl_table_key_expects(key, value);
+    fl_fail(error, section->mistake, "%s = %s: expected %s", name, value, expected);
     return NULL;
 }
 

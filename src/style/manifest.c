@@ -1,7 +1,6 @@
 #include "style/manifest.h"
 
 #include "base/error.h"
-#include <string.h>
 
 /* A flag says which guess a value replaces. */
 static const FlTableKey style_keys[] = {
@@ -73,6 +72,18 @@ bool fl_manifest_read(FlStyle *style, const char *path, GError **error)
     return true;
 }
 
+/* A section of numbers, unless all of them are as usual. */
+static void append_section(const FlKeyTable *table, const void *object, const void *usual,
+                           const char *name, GString *text)
+{
+    g_autoptr(GString) unusual = g_string_new(NULL);
+    fl_key_table_write(table, object, usual, 0, unusual);
+    if (unusual->len == 0)
+        return;
+    g_string_append_printf(text, "\n[%s]\n", name);
+    fl_key_table_write(table, object, NULL, 0, text);
+}
+
 char *fl_manifest_text(const FlStyle *style)
 {
     const FlStyle plain = {.scale = -1, // so that it is always written
@@ -83,14 +94,8 @@ char *fl_manifest_text(const FlStyle *style)
                            .wash = FL_WASH_DEFAULTS};
     GString *text = g_string_new("[style]\n");
     fl_key_table_write(&style_table, style, &plain, style->guessed, text);
-    if (memcmp(&style->front, &plain.front, sizeof plain.front) != 0) {
-        g_string_append(text, "\n[front]\n");
-        fl_key_table_write(&fl_front_table, &style->front, NULL, 0, text);
-    }
-    if (memcmp(&style->wash, &plain.wash, sizeof plain.wash) != 0) {
-        g_string_append(text, "\n[wash]\n");
-        fl_key_table_write(&fl_wash_table, &style->wash, NULL, 0, text);
-    }
+    append_section(&fl_front_table, &style->front, &plain.front, "front", text);
+    append_section(&fl_wash_table, &style->wash, &plain.wash, "wash", text);
     for (int k = 0; k < style->settings.n; k++)
         g_string_append_printf(text, "%s%s = %s\n", k == 0 ? "\n[region]\n" : "",
                                style->settings.override[k].key, style->settings.override[k].value);
