@@ -93,8 +93,7 @@ static void strokes_have_the_direction_that_is_asked_for(void)
         lay((FlMarks)marks, 90, 150, 130, 0, paper, upright);
         const double first = change(level, 150, 130, 0, 6) / change(level, 150, 130, 6, 0);
         const double second = change(upright, 150, 130, 6, 0) / change(upright, 150, 130, 0, 6);
-        g_test_message("%s: across over along %.2f, %.2f", fl_marks_word((FlMarks)marks), first,
-                       second);
+        g_test_message("marks %d: across over along %.2f, %.2f", marks, first, second);
         g_assert_cmpfloat(first, >, 1.4);
         g_assert_cmpfloat(second, >, 1.4);
     }
@@ -139,7 +138,7 @@ static void paint_lies_on_the_peaks_of_the_paper(void)
             aa += amount * amount, hh += height * height, ah += amount * height;
         }
         const double r = (ah - a * h / n) / sqrt((aa - a * a / n) * (hh - h * h / n));
-        g_test_message("%s: correlation %.2f", fl_marks_word((FlMarks)marks), r);
+        g_test_message("marks %d: correlation %.2f", marks, r);
         g_assert_cmpfloat(r, >, .25);
     }
 }

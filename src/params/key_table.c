@@ -203,10 +203,8 @@ char *fl_table_key_text(const FlTableKey *key, const void *object, int n, const 
         return numbers_text(key, field, n, format);
     case FL_KEY_SWITCH:
         return g_strdup(*(const bool *)field ? "on" : "off");
-    case FL_KEY_WORD: {
-        g_auto(GStrv) words = g_strsplit(key->words, "|", -1);
-        return g_strdup(words[*(const int *)field - (int)key->min]);
-    }
+    case FL_KEY_WORD:
+        return fl_text_word(key->words, *(const int *)field - (int)key->min);
     }
     g_assert_not_reached();
 }

@@ -24,10 +24,4 @@ typedef enum FlMarks {
 
 #define FL_MARKS_WORDS "auto|off|charcoal|pastel|brush"
 
-/** The word for marks, static. */
-const char *fl_marks_word(FlMarks marks);
-
-/** A medium's word, static. */
-const char *fl_medium_word(FlMedium medium);
-
 #endif

@@ -347,18 +347,11 @@ static char *number_text(double number)
     return g_strdup(text);
 }
 
-/* The n-th of words separated by bars; NULL after the last. */
-static char *word(const char *words, int n)
-{
-    g_auto(GStrv) all = g_strsplit(words, "|", -1);
-    return n >= 0 && n < (int)g_strv_length(all) ? g_strdup(all[n]) : NULL;
-}
-
 static char *tint_text(const FlOption *option, const FlRegionSettings *t)
 {
     return t->has_colour
                ? g_strdup_printf("#%02x%02x%02x", t->colour[0], t->colour[1], t->colour[2])
-               : word(option->value, (int)t->tint);
+               : fl_text_word(option->value, (int)t->tint);
 }
 
 const FlKeys *fl_option_keys(const FlOption *option, const FlRegionSettings *settings)
@@ -393,11 +386,11 @@ char *fl_option_get(const FlOption *option, const void *object)
                                              : number_text(*(const double *)field);
     case FL_OPTION_WORD:
     case FL_OPTION_SWITCH:
-        return word(option->value, *(const int *)field - 1);
+        return fl_text_word(option->value, *(const int *)field - 1);
     case FL_OPTION_CHOICE:
     case FL_OPTION_DETAIL:
     case FL_OPTION_PASS:
-        return word(option->value, *(const int *)field);
+        return fl_text_word(option->value, *(const int *)field);
     case FL_OPTION_TEXT:
     case FL_OPTION_PATH:
     case FL_OPTION_GROUND:

@@ -61,3 +61,9 @@ bool fl_text_choice(const char *text, const char *form, int *index)
         }
     return false;
 }
+
+char *fl_text_word(const char *form, int index)
+{
+    g_auto(GStrv) words = g_strsplit(form, "|", -1);
+    return index >= 0 && index < (int)g_strv_length(words) ? g_strdup(words[index]) : NULL;
+}

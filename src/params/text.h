@@ -22,4 +22,7 @@ bool fl_text_colour(const char *text, uint8_t rgb[3]);
 /** One of the words of `form`, which has '|' between them: sets its index. */
 bool fl_text_choice(const char *text, const char *form, int *index);
 
+/** The reverse: a word of `form`, to be freed with g_free(); NULL if there are fewer. */
+char *fl_text_word(const char *form, int index);
+
 #endif

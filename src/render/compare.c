@@ -12,6 +12,7 @@
 #include "io/png.h"
 #include "job/outputs.h"
 #include "params/options.h"
+#include "params/text.h"
 #include "render/render_frames.h"
 #include "style/style_folder.h"
 #include <string.h>
@@ -413,10 +414,11 @@ static bool show_recording(const FlContactSheet *contact, const FlStyleEntry *en
     }
     g_autofree char *name =
         g_strdup_printf("%s  %s", entry->name, entry->title ? entry->title : "");
+    g_autofree char *medium = fl_text_word(FL_MEDIUM_WORDS, (int)style->medium);
+    const bool is_auto = style->medium == FL_MEDIUM_AUTO;
     g_autofree char *lines = g_strdup_printf(
         "%s\n%dx%d, %d frames%s%s", style->character ? style->character : "", style->width,
-        style->height, style->n_frames, style->medium == FL_MEDIUM_AUTO ? "" : ", ",
-        style->medium == FL_MEDIUM_AUTO ? "" : fl_medium_word(style->medium));
+        style->height, style->n_frames, is_auto ? "" : ", ", is_auto ? "" : medium);
     fl_contact_sheet_name_row(contact, row, name, lines);
     return true;
 }

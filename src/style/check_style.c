@@ -1,6 +1,7 @@
 /* Checks a style: reports what was read and measured, and what will paint badly. */
 #include "base/error.h"
 #include "base/headroom.h"
+#include "params/text.h"
 #include "style/check_sheet.h"
 #include "style/estimate.h"
 #include "style/manifest.h"
@@ -55,7 +56,8 @@ static void add_given_facts(Check *check)
         add(facts, "made by    %s", style->made_by);
     add(facts, "size       %dx%d, %d frame%s, %g per second (%s)", style->width, style->height,
         style->n_frames, style->n_frames == 1 ? "" : "s", style->fps, origin(style, FL_GUESS_FPS));
-    add(facts, "medium     %s, scale %g", fl_medium_word(style->medium), style->scale);
+    g_autofree char *medium = fl_text_word(FL_MEDIUM_WORDS, (int)style->medium);
+    add(facts, "medium     %s, scale %g", medium, style->scale);
     add(facts, "paper      #%02x%02x%02x (%s)", style->paper[0], style->paper[1], style->paper[2],
         origin(style, FL_GUESS_PAPER));
     add(facts, "border     %.1f px (%s)", style->border_px, origin(style, FL_GUESS_BORDER));
