@@ -392,6 +392,37 @@ static void a_stop_before_the_paint_keeps_the_drawing(void)
     assert_as_written(test, 2);
 }
 
+/* The mean difference of two frames where frame `number` has no shapes. */
+static double apart_on_paper(const uint8_t *a, const uint8_t *b, int number)
+{
+    const int left = 20 + 3 * number - 2, right = left + 26 + 4;
+    double sum = 0;
+    int n = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const bool in_still = x >= 4 && x < 38 && y >= 6 && y < 44;
+            const bool in_moving = x >= left && x < right && y >= 18 && y < 50;
+            for (int c = 0; c < 3 && !in_still && !in_moving; c++, n++)
+                sum += abs(a[4 * (y * WIDTH + x) + c] - b[4 * (y * WIDTH + x) + c]);
+        }
+    return sum / n;
+}
+
+static void a_late_start_knows_the_paper(void)
+{
+    g_autoptr(Case) test = case_new();
+    set(test->film, NULL, "stain", "1");
+    g_autofree uint8_t *whole = frame_of(test->film, 4);
+    set(test->film, NULL, "frames", "4-");
+    g_autofree uint8_t *late = frame_of(test->film, 0), *again = frame_of(test->film, 0);
+    set(test->film, NULL, "stain", "0");
+    set(test->film, NULL, "front", "0");
+    g_autofree uint8_t *clean = frame_of(test->film, 0);
+    g_assert_cmpmem(late, 4 * WIDTH * HEIGHT, again, 4 * WIDTH * HEIGHT);
+    g_assert_cmpfloat(apart_on_paper(whole, late, 4), <, 0.4 * apart_on_paper(whole, clean, 4));
+    g_assert_cmpfloat(apart_on_paper(whole, clean, 4), >, 0.5);
+}
+
 static void regions_and_drawings_are_told(void)
 {
     g_autoptr(Case) test = case_new();
@@ -433,6 +464,7 @@ int main(int argc, char **argv)
     TEST(a_config_file_is_read_again);
     TEST(a_frame_can_be_stopped_within);
     TEST(a_stop_before_the_paint_keeps_the_drawing);
+    TEST(a_late_start_knows_the_paper);
     TEST(regions_and_drawings_are_told);
     TEST(mistakes_leave_the_film_as_it_was);
     return g_test_run();

@@ -13,6 +13,9 @@ typedef struct Scene {
     FlWetSheet sheet;
     uint8_t before[PIXELS], now[PIXELS], ahead[PIXELS], touches[PIXELS];
     float distance[PIXELS], beyond[PIXELS], motion[2 * PIXELS];
+    uint8_t rgb[3 * PIXELS];
+    int16_t region[PIXELS];
+    FlLaid laid;
     FlWetShape shape;
     FlWetDials dials;
     GArray *fronts, *stains;
@@ -45,7 +48,11 @@ static Scene *scene_new(void)
                                 .now = scene->now,
                                 .motion = scene->motion,
                                 .overlap = 1,
-                                .fill = {1, 0.5f, 0.2f}};
+                                .came = FL_AFFINE_NONE,
+                                .laid = &scene->laid,
+                                .paper = {255, 255, 255}};
+    scene->laid = (FlLaid){SIDE, SIDE, 1, scene->rgb, scene->region};
+    memset(scene->rgb, 120, sizeof scene->rgb);
     scene->dials = (FlWetDials){&plain, 1, 1, 5};
     memset(scene->touches, 3, PIXELS);
     scene->fronts = g_array_new(FALSE, FALSE, sizeof(FlFrontMark));
@@ -182,16 +189,11 @@ static void test_other_paint(void)
  * but the disk's own. */
 static float most_ink(int16_t region)
 {
-    static uint8_t rgb[3 * PIXELS];
-    static int16_t regions[PIXELS];
     Scene *scene = scene_new();
     float most = 0;
     for (int p = 0; p < PIXELS; p++)
-        regions[p] = region;
-    const FlLaid laid = {SIDE, SIDE, 1, rgb, regions};
-    memset(rgb, 100, sizeof rgb);
-    memset(scene->shape.paper, 200, 3);
-    scene->shape.region = 3, scene->shape.laid = &laid;
+        scene->region[p] = region;
+    scene->shape.region = 3;
     mark(scene, 80, 86, 0);
     g_assert_cmpuint(scene->fronts->len, >, 0);
     for (guint i = 0; i < scene->fronts->len; i++) {
@@ -262,6 +264,34 @@ static void test_moved(void)
     scene_free(scene);
 }
 
+static float stain_of(const Scene *scene)
+{
+    float sum = 0;
+    for (int p = 0; p < PIXELS; p++)
+        sum += scene->sheet.cell[p].stain;
+    return sum;
+}
+
+/* A quarter of a turn; the cell at (x, y) has come from (y, SIDE - 1 - x). */
+static void test_turned(void)
+{
+    const FlAffine from = {.xx = 0, .yx = -1, .xy = 1, .yy = 0, .x0 = 0, .y0 = SIDE - 1};
+    const int x = 37, y = 90, was = (SIDE - 1 - x) * SIDE + y;
+    Scene *scene = scene_new();
+    mark(scene, 80, 86, 0);
+    fl_wet_sheet_stain(&scene->sheet, &plain, scene->stains);
+    const float before = stain_of(scene);
+    const FlPaperGrains grain = fl_wet_sheet_grain(&scene->sheet, was);
+    const FlRect wet = scene->sheet.wet;
+    g_assert_true(fl_wet_sheet_turn(&scene->sheet, &from, NULL));
+    const FlPaperGrains now = fl_wet_sheet_grain(&scene->sheet, y * SIDE + x);
+    g_assert_cmpint(now.hollow, ==, grain.hollow);
+    g_assert_cmpint(now.spot, ==, grain.spot);
+    g_assert_cmpfloat(fabsf(stain_of(scene) - before), <, 1e-3f * before);
+    g_assert_cmpint(abs(scene->sheet.wet.width - wet.height), <=, 1);
+    scene_free(scene);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -273,5 +303,6 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/seen-paint-runs-ahead", test_seen_paint);
     g_test_add_func("/wet/marks-fade-until-none-is-left", test_dries);
     g_test_add_func("/wet/marks-and-grain-move-with-the-paper", test_moved);
+    g_test_add_func("/wet/the-paper-turns-with-the-camera", test_turned);
     return g_test_run();
 }

@@ -40,6 +40,17 @@ static int middle(const FlLaid *laid, int cell)
     return (int)(((float)cell + 0.5f) * laid->cell_px);
 }
 
+static void lay_cell(FlLaid *laid, size_t cell, const uint8_t rgb[3], int alpha, int region,
+                     const uint8_t paper[3])
+{
+    if (alpha < LEAST_ALPHA)
+        return;
+    for (int c = 0; c < 3; c++)
+        laid->rgb[3 * cell + (size_t)c] =
+            (uint8_t)((rgb[c] * alpha + paper[c] * (255 - alpha) + 127) / 255);
+    laid->region[cell] = (int16_t)region;
+}
+
 static void lay_run(FlLaid *laid, int y, FlColumns columns, const uint8_t *rgba, int region,
                     const uint8_t paper[3])
 {
@@ -50,14 +61,7 @@ static void lay_run(FlLaid *laid, int y, FlColumns columns, const uint8_t *rgba,
         if (px >= columns.last)
             break;
         const uint8_t *from = rgba + 4 * (size_t)(px - columns.first);
-        const size_t cell = (size_t)y * (size_t)laid->width + (size_t)x;
-        const int alpha = from[3];
-        if (alpha < LEAST_ALPHA)
-            continue;
-        for (int c = 0; c < 3; c++)
-            laid->rgb[3 * cell + (size_t)c] =
-                (uint8_t)((from[c] * alpha + paper[c] * (255 - alpha) + 127) / 255);
-        laid->region[cell] = (int16_t)region;
+        lay_cell(laid, (size_t)y * (size_t)laid->width + (size_t)x, from, from[3], region, paper);
     }
 }
 
@@ -79,4 +83,22 @@ void fl_laid_add(FlLaid *laid, const FlLayer *layer, int region, const uint8_t p
             lay_run(laid, y, columns, runs->rgba + 4 * run->at, region, paper);
         }
     }
+}
+
+void fl_laid_add_draw(FlLaid *laid, const FlDraw *draw, const uint8_t *colour,
+                      const uint8_t paper[3])
+{
+    const FlRect box = draw->area.box;
+    for (int y = cell_from(laid, box.y); y < laid->height; y++)
+        for (int x = cell_from(laid, box.x); x < laid->width; x++) {
+            const int column = middle(laid, x) - box.x, row = middle(laid, y) - box.y;
+            if (column >= box.width || row >= box.height)
+                break;
+            if (column < 0 || row < 0)
+                continue;
+            const size_t p = (size_t)row * (size_t)box.width + (size_t)column;
+            const uint8_t *own = draw->picture ? draw->picture + 4 * p : draw->rgb;
+            lay_cell(laid, (size_t)y * (size_t)laid->width + (size_t)x, colour ? colour : own,
+                     draw->coverage[p] * draw->alpha / 255, draw->region, paper);
+        }
 }

@@ -112,6 +112,9 @@ int fl_drawing_number(const FlDrawing *drawing, int frame);
 /** All files that the inputs name, those of frames that are not wanted as well; ends in NULL. */
 const char *const *fl_drawing_found_files(const FlDrawing *drawing);
 
+/** The number of files found of frames before the first one; they lead fl_drawing_found_files(). */
+int fl_drawing_earlier(const FlDrawing *drawing);
+
 /**
  * The frame whose picture is shown: `frame` itself, unless a missing frame is held there; then the
  * first of the frames that show the same picture.

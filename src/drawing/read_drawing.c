@@ -113,6 +113,11 @@ const char *const *fl_drawing_found_files(const FlDrawing *drawing)
     return (const char *const *)drawing->sequence->found;
 }
 
+int fl_drawing_earlier(const FlDrawing *drawing)
+{
+    return drawing->sequence->n_earlier;
+}
+
 /* Missing frames at the start of the film show the first frame that exists, so that all of these
  * are the same. */
 int fl_drawing_shown(const FlDrawing *drawing, int frame)

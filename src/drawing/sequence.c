@@ -559,6 +559,9 @@ FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs,
     g_autoptr(GArray) wanted =
         fl_range_parse(options->range ? options->range : all, first, last, error);
     FlSequence *sequence = wanted ? choose(found, wanted, options->missing, warnings, error) : NULL;
+    while (sequence &&
+           g_array_index(found, Found, sequence->n_earlier).number < sequence->number[0])
+        sequence->n_earlier++;
     if (sequence)
         set_moments(sequence, &frames, &options->moments);
     return sequence;

@@ -19,7 +19,8 @@ typedef struct FlSequence {
     int *layer;        // the layer, page or moment of its file, from 1; 0: the file is the frame
     double *seconds;   // of TIME: the moment
     int n_left_out;    // frames whose files were found, but are held or skipped
-    char **found; // all files that the inputs name, those of other frames as well; ends in NULL
+    char **found;  // all files that the inputs name, those of other frames as well; ends in NULL
+    int n_earlier; // of these: how many are of frames before the first one
 } FlSequence;
 
 /** The selection of frames from the inputs. */

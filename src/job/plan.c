@@ -96,6 +96,8 @@ static void list_inputs(FlPlan *plan)
     for (int p = 0; p < plan->n_painted; p++)
         regions[p] = plan->painted[p].name;
     fl_inputs_add_options(plan->inputs, &plan->options, plan->drawing, regions);
+    for (int k = fl_plan_earliest(plan); k < fl_drawing_earlier(plan->drawing); k++)
+        fl_inputs_add(plan->inputs, fl_drawing_found_files(plan->drawing)[k]);
 }
 
 /* Finds the places of the paint and the hidden regions before a merge reads any paint. */
@@ -249,6 +251,38 @@ FlPlan *fl_plan_follow(FlPlan *before, const FlRenderOptions *options, size_t me
 FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
 {
     return follow(NULL, false, options, 0, error);
+}
+
+/* Numbers from the first frame to the next. */
+static int step_of(const FlDrawing *drawing)
+{
+    const bool alone = fl_drawing_frames(drawing) < 2;
+    return alone ? 1 : fl_drawing_number(drawing, 1) - fl_drawing_number(drawing, 0);
+}
+
+int fl_plan_earliest(const FlPlan *plan)
+{
+    return MAX(fl_drawing_earlier(plan->drawing) - FL_WET_FRAMES * step_of(plan->drawing), 0);
+}
+
+FlPlan *fl_plan_earlier(const FlPlan *plan, int *first, GError **error)
+{
+    enum { AFTER = 4 }; // frames that marks look ahead
+    const FlDrawing *drawing = plan->drawing;
+    const int number = fl_drawing_number(drawing, 0), step = step_of(drawing);
+    *first = MIN(fl_drawing_earlier(drawing) / step, FL_WET_FRAMES) / plan->hold * plan->hold;
+    g_autofree char *range =
+        g_strdup_printf("%d-%dx%d", number - *first * step, number + AFTER * step, step);
+    FlRenderOptions options = plan->options;
+    options.frames = range, options.missing = FL_MISSING_HOLD;
+    options.output = options.layers = options.paint = NULL, options.format = "null";
+    options.merge = options.loop = options.strict = options.verify = false;
+    options.dry_run = true, options.part = NULL;
+    options.progress = NULL, options.warning = options.note = NULL, options.reads = NULL;
+    FlPlan *earlier = fl_plan_new(&options, error);
+    if (earlier)
+        earlier->options.frames = NULL; // its text is freed here
+    return earlier;
 }
 
 void fl_plan_free(FlPlan *plan)

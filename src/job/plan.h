@@ -62,6 +62,9 @@ double fl_plan_share_of_page(const FlPlan *plan, int region);
 
 #define FL_GROUND_SHARE 0.4 // of the page: a larger region is ground
 
+/** Frames after which no mark on wet paper is left: so many before it a frame depends on. */
+#define FL_WET_FRAMES 36
+
 /**
  * Reads config and drawing and settles how every region is painted, without painting or writing.
  * If plan->finished is FL_FINISHED_ALL, no drawing is read and the later fields are unset.
@@ -82,6 +85,13 @@ FlPlan *fl_plan_follow(FlPlan *before, const FlRenderOptions *options, size_t me
                        GError **error);
 
 void fl_plan_free(FlPlan *plan); // NULL is fine
+
+/** The plan of the frames before the first one on which the wet paper of that depends, and of some
+ * after it; frame *first of these is the first one. A frame that cannot be read is held. */
+FlPlan *fl_plan_earlier(const FlPlan *plan, int *first, GError **error);
+
+/** The first of these files, of fl_drawing_found_files(); they go up to fl_drawing_earlier(). */
+int fl_plan_earliest(const FlPlan *plan);
 
 /** True if paint is used for frames only, here or in a merge, so that hidden regions need no paint.
  * Layers, which can be moved apart, show them. */

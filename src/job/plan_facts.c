@@ -162,6 +162,8 @@ FlFacts *fl_plan_facts(const FlPlan *plan)
     add_options(facts, plan);
     add_drawings(facts, plan);
     add_regions(facts, plan); // last of the drawing, so that a changed file is named as the cause
+    for (int k = fl_plan_earliest(plan); k < fl_drawing_earlier(plan->drawing); k++)
+        add_file(facts, plan->inputs, fl_drawing_found_files(plan->drawing)[k]);
     if (paper && g_file_test(paper, G_FILE_TEST_IS_REGULAR))
         add_file(facts, plan->inputs, paper);
     if (plan->options.directions)

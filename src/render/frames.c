@@ -224,10 +224,53 @@ static bool seek_painters(FlFrames *frames, int shown,
     return good;
 }
 
+/* An FlWetMotion; data: an FlMotionSource. */
+static bool wet_motion(void *data, int region, int before, int now, FlRect part, float *motion,
+                       GError **error)
+{
+    const FlRegionStep step = {region, before, now, part, {NULL, NULL}};
+    g_autofree float *half =
+        fl_alloc_unset(2 * fl_rect_pixels(fl_rect_halved(part)), sizeof *half, "a motion", error);
+    if (!half || !fl_motion_source_get(data, &step, half, NULL, error))
+        return false;
+    fl_flow_double(half, part.width, part.height, motion);
+    return true;
+}
+
+static bool open_wet(FlFrames *frames, GError **error)
+{
+    const FlPlan *plan = frames->plan;
+    frames->marked = -1;
+    FlMotionSource *motion = frames->painters.motion[1];
+    if (!motion && !frames->motion)
+        frames->motion = fl_motion_source_new(plan->drawing, plan->masks, true, error);
+    motion = motion ? motion : frames->motion;
+    if (!motion)
+        return false;
+    frames->wet =
+        fl_wet_new(plan, frames->background.paper, frames->wet, wet_motion, motion, error);
+    return frames->wet;
+}
+
+/* The paper of a film that starts late, whose first frame is composed without marks. */
+static bool know_earlier(FlFrames *frames, GError **error)
+{
+    int first;
+    g_autoptr(FlPlan) plan = fl_plan_earlier(frames->plan, &first, error);
+    g_autoptr(FlMotionSource) motion =
+        plan && fl_plan_rasterise(plan, error)
+            ? fl_motion_source_new(plan->drawing, plan->masks, true, error)
+            : NULL;
+    g_autoptr(FlWet) wet =
+        motion ? fl_wet_new(plan, frames->background.paper, NULL, wet_motion, motion, error) : NULL;
+    return wet && fl_wet_learn(wet, first, frames->wet, error) && fl_wet_frame(wet, first, error) &&
+           fl_wet_follow(frames->wet, wet, error);
+}
+
 /* A missing frame that is held repeats the one before. Shapes are drawn beside the painting, those
- * of the next frame beside the composing. */
-static bool make_frame(FlFrames *frames, int frame, int next, FlComposite *composite,
-                       double *paint_s, GError **error)
+ * of the next frame beside the composing. marks: the paper is marked. */
+static bool compose(FlFrames *frames, int frame, int next, bool marks, FlComposite *composite,
+                    double *paint_s, GError **error)
 {
     const gint64 start = g_get_monotonic_time();
     const FlPlan *plan = frames->plan;
@@ -236,7 +279,7 @@ static bool make_frame(FlFrames *frames, int frame, int next, FlComposite *compo
     if (composed && frames->drawn != shown)
         start_drawing(frames, shown);
     const bool painted = paint(frames, shown, error);
-    *paint_s = seconds_since(start);
+    *paint_s += seconds_since(start);
     trim(plan); // painting and composing cannot use each other's freed memory
     if (!fl_task_wait(&frames->drawing, painted ? error : NULL) || !painted ||
         fl_stop_asked(&frames->painters.shapes.stop, error))
@@ -250,7 +293,7 @@ static bool make_frame(FlFrames *frames, int frame, int next, FlComposite *compo
         return false;
     if (next >= 0 && frames->beside)
         start_drawing(frames, fl_drawing_shown(plan->drawing, next));
-    if (frames->wet && !fl_wet_frame(frames->wet, shown, error)) {
+    if (frames->wet && marks && !fl_wet_frame(frames->wet, shown, error)) {
         fl_draw_list_free(draws);
         return false;
     }
@@ -268,6 +311,30 @@ static bool make_frame(FlFrames *frames, int frame, int next, FlComposite *compo
          fl_composite_enlarge(composite, plan->width, plan->height, error));
     trim(plan);
     return made;
+}
+
+/* Marks on the paper from frames before the first one, which are not painted: their fills are as
+ * pale near edges as the paint of the first. Drafts begin on clean paper. */
+static bool know_before(FlFrames *frames, int frame, double *paint_s, GError **error)
+{
+    const FlPlan *plan = frames->plan;
+    const bool loops = plan->options.loop;
+    g_auto(FlComposite) plain = {0};
+    if (!frames->wet || fl_wet_begun(frames->wet) || frames->small ||
+        (!loops && (frame > 0 || fl_drawing_earlier(plan->drawing) == 0)))
+        return true;
+    return compose(frames, frame, -1, false, &plain, paint_s, error) &&
+           (loops ? fl_wet_learn(frames->wet, fl_drawing_shown(plan->drawing, frame), frames->wet,
+                                 error)
+                  : know_earlier(frames, error));
+}
+
+static bool make_frame(FlFrames *frames, int frame, int next, FlComposite *composite,
+                       double *paint_s, GError **error)
+{
+    *paint_s = 0;
+    return know_before(frames, frame, paint_s, error) &&
+           compose(frames, frame, next, true, composite, paint_s, error);
 }
 
 static void begin_wet(FlFrames *frames, int known)
@@ -345,33 +412,6 @@ bool fl_frames_check(FlFrames *frames, GError **error)
                               ground ? ground : plan->paper, plan->drawing, error) &&
            (fl_plan_is_of_paint(plan) ? fl_paper_check(plan->options.paper, error)
                                       : make_sheet(frames, error));
-}
-
-/* An FlWetMotion. */
-static bool wet_motion(void *data, int region, int before, int now, FlRect part, float *motion,
-                       GError **error)
-{
-    const FlFrames *frames = data;
-    const FlRegionStep step = {region, before, now, part, {NULL, NULL}};
-    FlMotionSource *known = frames->painters.motion[1];
-    g_autofree float *half =
-        fl_alloc_unset(2 * fl_rect_pixels(fl_rect_halved(part)), sizeof *half, "a motion", error);
-    if (!half || !fl_motion_source_get(known ? known : frames->motion, &step, half, NULL, error))
-        return false;
-    fl_flow_double(half, part.width, part.height, motion);
-    return true;
-}
-
-static bool open_wet(FlFrames *frames, GError **error)
-{
-    const FlPlan *plan = frames->plan;
-    frames->marked = -1;
-    if (!frames->painters.motion[1] && !frames->motion &&
-        !(frames->motion = fl_motion_source_new(plan->drawing, plan->masks, true, error)))
-        return false;
-    frames->wet =
-        fl_wet_new(plan, frames->background.paper, frames->wet, wet_motion, frames, error);
-    return frames->wet;
 }
 
 /* Frees styles that an earlier plan has used. */

@@ -2,12 +2,13 @@
 #ifndef FLUIDY_WET_FIBRES_H
 #define FLUIDY_WET_FIBRES_H
 
+#include "svg/affine.h"
 #include <stdint.h>
 
 /** A sheet; places on it are px of a page of FL_WET_PAGE_PX. */
 typedef struct FlFibres {
     uint64_t seed;
-    float x, y; // cells that the paper has moved since the first frame
+    FlAffine place; // of a cell of the page on the paper, as that lay in the first frame
 } FlFibres;
 
 /** Lengths of the front and the stain are px of a page that is so wide. */

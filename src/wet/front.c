@@ -79,9 +79,14 @@ static bool find_mark(const Front *front, const FlWetSheet *sheet, size_t p, flo
     const float inset = MIN(2.5f * px, 0.45f * point->half_width), ahead = inset - depth;
     if (f <= 0.5f * px || depth >= 14 * px || ahead > 4.2f * f + 6 * px)
         return false;
-    const float x = (float)(mark->at % sheet->page.width) - sheet->fibres.x;
-    const float y = (float)(mark->at / sheet->page.width) - sheet->fibres.y;
-    const float run = fl_fibres_run(&sheet->fibres, x / px, y / px, point->nx, point->ny);
+    const FlAffine *place = &sheet->fibres.place;
+    const FlPoint at = fl_affine_apply(
+        place, (FlPoint){mark->at % sheet->page.width, mark->at / sheet->page.width});
+    const double dx = place->xx * point->nx + place->xy * point->ny;
+    const double dy = place->yx * point->nx + place->yy * point->ny;
+    const double length = MAX(sqrt(dx * dx + dy * dy), 1e-6);
+    const float run = fl_fibres_run(&sheet->fibres, (float)at.x / px, (float)at.y / px,
+                                    (float)(dx / length), (float)(dy / length));
     const float fingers = style->fingers * fl_ease(1.5f * px, 7 * px, f);
     const float reach =
         1.25f * f * (1 - fingers + 2.2f * fingers * run * sqrtf(sqrtf(run))) - ahead + 2 * px;

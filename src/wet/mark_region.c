@@ -214,7 +214,7 @@ static bool read_planes(const FlWetStep *step, FlMarker *marker, int before, int
     find_beyond(planes);
     find_touches(wet, region, planes);
     return !moves || !wet->motion ||
-           fl_wet_get_motion(wet, marker, before, now, rect, planes->motion, error);
+           fl_wet_get_motion(wet, region, before, now, rect, planes->motion, error);
 }
 
 /** A region that is gone takes its fronts with it. */
@@ -225,6 +225,15 @@ static void forget(const FlWet *wet, FlMarker *marker)
     fl_moving_edge_clear(&marker->before);
     g_array_set_size(marker->fronts, 0);
     marker->rests = false;
+}
+
+/** A map of the page as one of a part of it. */
+static FlAffine within(const FlAffine *map, FlRect rect)
+{
+    const FlPoint corner = fl_affine_apply(map, (FlPoint){rect.x, rect.y});
+    FlAffine own = *map;
+    own.x0 = corner.x - rect.x, own.y0 = corner.y - rect.y;
+    return own;
 }
 
 static bool mark_moving(const FlWetStep *step, FlMarker *marker, int before, int now, bool moves,
@@ -243,13 +252,11 @@ static bool mark_moving(const FlWetStep *step, FlMarker *marker, int before, int
                         .now = planes.now,
                         .distance_before = planes.distance_before,
                         .motion = planes.motion,
-                        .ground_x = step->ground[0],
-                        .ground_y = step->ground[1],
+                        .came = within(&step->came, planes.rect),
                         .overlap = overlap_of(&planes),
-                        .laid = step->laid,
+                        .laid = &wet->laid,
                         .region = marker->plan->region};
     memcpy(shape.paper, wet->paper, 3);
-    memcpy(shape.fill, marker->fill, sizeof shape.fill);
     const FlWetAround around = {planes.beyond, planes.touches};
     if (!fl_moving_edge_init(&edge, &shape, &marker->before, error))
         return false;
@@ -287,8 +294,8 @@ bool fl_wet_mark_one(void *data, int m, int thread, GError **error)
     }
     if (now != step->frame) // its last picture is shown again, and wets what it wetted
         return true;
-    const bool still = fl_mask_store_same(wet->plan->masks, plan->region, before, now) &&
-                       step->ground[0] == 0 && step->ground[1] == 0;
+    const bool still =
+        fl_mask_store_same(wet->plan->masks, plan->region, before, now) && !step->pans;
     if (still && marker->rests)
         return true;
     return mark_moving(step, marker, before, now, !still, error);

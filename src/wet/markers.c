@@ -86,17 +86,6 @@ void fl_wet_turn_dials(const FlWet *wet, FlMarker *marker, int frame)
                                  dial * (float)now.stain, (float)wet->plan->options.overrun};
 }
 
-/** The absorbance of a region's colour. */
-static void find_fill(const FlWet *wet, FlMarker *marker)
-{
-    const FlRegionSettings *settings = &marker->plan->settings;
-    const uint8_t *rgb = settings->has_colour
-                             ? settings->colour
-                             : fl_drawing_region(wet->plan->drawing, marker->plan->region)->rgb;
-    for (int c = 0; c < 3; c++)
-        marker->fill[c] = fl_wet_absorbance(rgb[c], wet->paper[c]);
-}
-
 bool fl_wet_make_markers(FlWet *wet, GError **error)
 {
     const FlPlan *plan = wet->plan;
@@ -116,31 +105,9 @@ bool fl_wet_make_markers(FlWet *wet, GError **error)
             return false;
         if (marker->size <= 0.001f)
             continue;
-        find_fill(wet, marker);
         marker->fronts = g_array_new(FALSE, FALSE, sizeof(FlFrontMark));
         marker->stains = g_array_new(FALSE, FALSE, sizeof(FlStainMark));
         wet->n_markers++;
     }
     return true;
-}
-
-/** The camera's region; auto: the largest ground. */
-bool fl_wet_find_camera(const FlPlan *plan, int *camera, GError **error)
-{
-    const char *wanted = plan->options.camera ? plan->options.camera : "auto";
-    const bool none = g_str_equal(wanted, "none"), found = g_str_equal(wanted, "auto");
-    double most = FL_GROUND_SHARE;
-    *camera = -1;
-    for (int r = 0; r < fl_drawing_regions(plan->drawing) && !none; r++) {
-        const double share = fl_plan_share_of_page(plan, r);
-        const bool named = g_str_equal(wanted, fl_drawing_region(plan->drawing, r)->name);
-        if (named || (found && share > most))
-            *camera = r, most = share;
-    }
-    if (*camera >= 0 || none || found)
-        return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "camera “%s”: there is no such region; expected auto, none or the name of one",
-                wanted);
-    return false;
 }

@@ -204,7 +204,9 @@ static void find_speed(const FlWetShape *shape, bool known, FlEdgePoint *point)
     const float page = FL_WET_PAGE_PX * shape->px, most = 0.05f * page * shape->frames;
     const float before = fl_wet_plane_at(shape->distance_before, shape->rect, point->x - point->u,
                                          point->y - point->v);
-    point->u -= shape->ground_x, point->v -= shape->ground_y;
+    float ground[2];
+    fl_wet_ground(shape, point->x, point->y, ground);
+    point->u -= ground[0], point->v -= ground[1];
     const float moved = point->u * point->nx + point->v * point->ny;
     const float grown = CLAMP(point->depth - before, -most, most) *
                         (known ? 1 : fl_ease(0.02f, 0.2f, shape->overlap));
@@ -243,7 +245,7 @@ static bool ink_at(const FlWetShape *shape, float x, float y, float ink[3])
     const FlLaid *laid = shape->laid;
     const int px = shape->rect.x + (int)floorf(x + 0.5f),
               py = shape->rect.y + (int)floorf(y + 0.5f);
-    if (!laid || px < 0 || py < 0 || px >= laid->width || py >= laid->height)
+    if (px < 0 || py < 0 || px >= laid->width || py >= laid->height)
         return false;
     const size_t cell = (size_t)py * (size_t)laid->width + (size_t)px;
     if (laid->region[cell] < shape->region)
@@ -254,14 +256,15 @@ static bool ink_at(const FlWetShape *shape, float x, float y, float ink[3])
 }
 
 /** The paint seen some way inside, as it was laid in the frame before; none where a shape has
- * faded. Its fill, if that frame is not known. */
+ * faded. */
 static void find_ink(const FlWetShape *shape, FlEdgePoint *point)
 {
-    float sum[3] = {0}, weight = 0;
+    float sum[3] = {0}, weight = 0, ground[2];
+    fl_wet_ground(shape, point->x, point->y, ground);
     for (int k = 1; k <= 4; k++) {
         const float depth = MIN(2.2f * (float)k * shape->px, 0.8f * point->half_width);
-        const float x = point->x - depth * point->nx - point->u - shape->ground_x;
-        const float y = point->y - depth * point->ny - point->v - shape->ground_y;
+        const float x = point->x - depth * point->nx - point->u - ground[0];
+        const float y = point->y - depth * point->ny - point->v - ground[1];
         float ink[3];
         if (!ink_at(shape, x, y, ink))
             continue;
@@ -270,7 +273,7 @@ static void find_ink(const FlWetShape *shape, FlEdgePoint *point)
         weight++;
     }
     for (int c = 0; c < 3; c++)
-        point->ink[c] = shape->laid ? sum[c] / MAX(weight, 1) : shape->fill[c];
+        point->ink[c] = sum[c] / MAX(weight, 1);
 }
 
 static void link_points(FlRect rect, const FlMovingEdge *edge, Links *links)
@@ -323,8 +326,10 @@ static const FlEdgePoint *point_before(const FlWetShape *shape, const FlMovingEd
                                        const FlEdgePoint *point)
 {
     const FlRect was = before->rect;
-    const float x = point->x + (float)(shape->rect.x - was.x) - point->u - shape->ground_x;
-    const float y = point->y + (float)(shape->rect.y - was.y) - point->v - shape->ground_y;
+    float ground[2];
+    fl_wet_ground(shape, point->x, point->y, ground);
+    const float x = point->x + (float)(shape->rect.x - was.x) - point->u - ground[0];
+    const float y = point->y + (float)(shape->rect.y - was.y) - point->v - ground[1];
     if (before->n == 0)
         return NULL;
     const size_t column = (size_t)CLAMP(x + 0.5f, 0, (float)was.width - 1);

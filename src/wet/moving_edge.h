@@ -4,6 +4,7 @@
 
 #include "base/rect.h"
 #include "compose/laid.h"
+#include "svg/affine.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -16,13 +17,12 @@ typedef struct FlWetShape {
     float frames;                 // since the frame before
     const uint8_t *now;           // coverage 0..255
     const float *distance_before; // to the contour in the frame before; true near the shape
-    const float *motion;      // of the drawing since the frame before, interleaved; NAN: unknown
-    float ground_x, ground_y; // the motion of the paper, likewise
-    float overlap;            // share of the smaller of both masks that lies in the other
-    const FlLaid *laid;       // of the frame before; NULL: not known
+    const float *motion; // of the drawing since the frame before, interleaved; NAN: unknown
+    FlAffine came;       // the place of the paper below a cell in the frame before
+    float overlap;       // share of the smaller of both masks that lies in the other
+    const FlLaid *laid;  // of the frame before
     int region;
     uint8_t paper[3];
-    float fill[3]; // absorbance of its paint, where that is not known
 } FlWetShape;
 
 /** A point of the contour; neighbours have similar values. All are floats. */
@@ -49,6 +49,13 @@ typedef struct FlMovingEdge {
     int known;        // points whose motion is known
     float fastest;    // of all points, cells a frame
 } FlMovingEdge;
+
+/** The motion of the paper at a place of rect, since the frame before. */
+static inline void fl_wet_ground(const FlWetShape *shape, float x, float y, float ground[2])
+{
+    const FlPoint was = fl_affine_apply(&shape->came, (FlPoint){x, y});
+    ground[0] = (float)(x - was.x), ground[1] = (float)(y - was.y);
+}
 
 /** A plane between its pixels; beyond it as at its edge. */
 float fl_wet_plane_at(const float *plane, FlRect rect, float x, float y);

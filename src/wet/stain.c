@@ -21,8 +21,11 @@ static float depth_at(const Passing *pixel, float time)
     const FlWetShape *shape = pixel->shape;
     const bool before = time <= 0;
     const float left = before ? 0 : 1 - time;
-    const float x = before ? pixel->x - shape->ground_x : pixel->x + left * pixel->point->u;
-    const float y = before ? pixel->y - shape->ground_y : pixel->y + left * pixel->point->v;
+    float ground[2] = {0, 0};
+    if (before)
+        fl_wet_ground(shape, pixel->x, pixel->y, ground);
+    const float x = pixel->x - ground[0] + left * pixel->point->u;
+    const float y = pixel->y - ground[1] + left * pixel->point->v;
     const FlRect rect = shape->rect;
     if (x < 0 || y < 0 || x > (float)rect.width - 1 || y > (float)rect.height - 1)
         return -1e6f;

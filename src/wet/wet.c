@@ -75,6 +75,7 @@ void fl_wet_free(FlWet *wet)
     }
     g_free(wet->marker);
     g_free(wet->half_width);
+    g_free(wet->rim);
     free(wet->lowest[0]);
     free(wet->lowest[1]);
     free(wet->layer.rgba);
@@ -110,17 +111,6 @@ static bool update_lowest(FlWet *wet, int before, int frame, GError **error)
     wet->lowest[1] = wet->lowest[0], wet->lowest[0] = last;
     wet->lowest_frame = frame;
     return find_lowest(wet, frame, last, error);
-}
-
-/** The motion of the paper since the frame before. */
-static void follow_camera(const FlWet *wet, int before, int frame, float ground[2])
-{
-    ground[0] = ground[1] = 0;
-    if (wet->camera < 0 || before < 0)
-        return;
-    const FlAnchor now = fl_drawing_anchor(wet->plan->drawing, wet->camera, frame);
-    const FlAnchor was = fl_drawing_anchor(wet->plan->drawing, wet->camera, before);
-    ground[0] = (now.x - was.x) / (float)wet->cell, ground[1] = (now.y - was.y) / (float)wet->cell;
 }
 
 /** The share of the painted area that was not there before: nearly all of it after a cut. */
@@ -167,18 +157,34 @@ void fl_wet_place_cells(FlWet *wet)
     wet->sheet.shift_y = (int)floorf(c * wet->camera_y + 0.5f);
 }
 
-static bool do_step(FlWet *wet, int before, int frame, const FlLaid *laid, GError **error)
+/** A camera that pans moves the sheet by whole cells, and shows these where the rest has brought
+ * them. */
+static bool move_sheet(FlWet *wet, const FlAffine *came, GError **error)
 {
-    FlWetStep step = {wet, frame, (float)wet->plan->hold, {0}, laid};
-    if (!update_lowest(wet, before, frame, error))
-        return false;
-    follow_camera(wet, before, frame, step.ground);
-    wet->camera_x += step.ground[0], wet->camera_y += step.ground[1];
-    const float dx = floorf(wet->camera_x + 0.5f), dy = floorf(wet->camera_y + 0.5f);
-    wet->camera_x -= dx, wet->camera_y -= dy;
-    if (!fl_wet_sheet_move(&wet->sheet, (int)dx, (int)dy, error))
-        return false;
+    FlAffine from = *came;
+    bool moved;
+    if (came->xx == 1 && came->yy == 1 && came->xy == 0 && came->yx == 0) {
+        wet->camera_x -= (float)came->x0, wet->camera_y -= (float)came->y0;
+        const float dx = floorf(wet->camera_x + 0.5f), dy = floorf(wet->camera_y + 0.5f);
+        wet->camera_x -= dx, wet->camera_y -= dy;
+        moved = fl_wet_sheet_move(&wet->sheet, (int)dx, (int)dy, error);
+    } else {
+        from.x0 -= wet->camera_x, from.y0 -= wet->camera_y;
+        wet->camera_x = wet->camera_y = 0;
+        moved = fl_wet_sheet_turn(&wet->sheet, &from, error);
+    }
     fl_wet_place_cells(wet);
+    return moved;
+}
+
+static bool do_step(FlWet *wet, int before, int frame, GError **error)
+{
+    FlWetStep step = {wet, frame, (float)wet->plan->hold, false, FL_AFFINE_NONE};
+    if (!update_lowest(wet, before, frame, error) ||
+        !fl_wet_follow_camera(wet, before, frame, &step.came, error) ||
+        !move_sheet(wet, &step.came, error))
+        return false;
+    step.pans = memcmp(&step.came, &FL_AFFINE_NONE, sizeof step.came) != 0;
     fl_wet_sheet_dry(&wet->sheet, step.frames);
     return mark_all(&step, error);
 }
@@ -199,7 +205,7 @@ static bool roll_in(FlWet *wet, int frame, GError **error)
         const int at = ((f % n) + n) % n;
         if (!is_new(wet, at))
             continue;
-        if (before >= 0 && !do_step(wet, before, at, NULL, error))
+        if ((before >= 0 && !do_step(wet, before, at, error)) || !fl_wet_lay_fills(wet, at, error))
             return false;
         before = at;
     }
@@ -222,9 +228,40 @@ bool fl_wet_frame(FlWet *wet, int frame, GError **error)
     const bool first = wet->at < 0;
     if ((first && !roll_in(wet, frame, error)) || (!first && !is_new(wet, frame)))
         return !first;
-    if (!do_step(wet, wet->at, frame, first ? NULL : &wet->laid, error))
+    if (!do_step(wet, wet->at, frame, error))
         return false;
     wet->at = frame;
+    return fl_wet_show(wet, error);
+}
+
+static bool is_same_region(const FlMarker *marker, const FlMarker *other)
+{
+    return g_str_equal(marker->plan->name, other->plan->name) &&
+           marker->plan->style_key == other->plan->style_key;
+}
+
+/** Swaps the contours and the marks of the last frame. */
+static void swap_edges(FlMarker *marker, FlMarker *other)
+{
+    const FlMarker last = *marker;
+    marker->before = other->before, other->before = last.before;
+    marker->fronts = other->fronts, other->fronts = last.fronts;
+    marker->rests = other->rests;
+}
+
+bool fl_wet_follow(FlWet *wet, FlWet *earlier, GError **error)
+{
+    const FlWetSheet sheet = wet->sheet, other = earlier->sheet;
+    if (sheet.width != other.width || sheet.height != other.height)
+        return true; // a page of another size is a new sheet
+    wet->sheet = other, earlier->sheet = sheet;
+    wet->camera_x = earlier->camera_x, wet->camera_y = earlier->camera_y;
+    fl_wet_place_cells(wet);
+    for (int m = 0; m < wet->n_markers; m++)
+        for (int k = 0; k < earlier->n_markers; k++)
+            if (is_same_region(&wet->marker[m], &earlier->marker[k]))
+                swap_edges(&wet->marker[m], &earlier->marker[k]);
+    wet->at = 0;
     return fl_wet_show(wet, error);
 }
 

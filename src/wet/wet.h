@@ -4,9 +4,6 @@
 
 #include "wet/wet_data.h"
 
-/** Frames after which no mark is left: so many before it starts a part of a film has to know. */
-#define FL_WET_FRAMES 36
-
 /** Says if any region of the plan marks the paper. */
 bool fl_wet_wanted(const FlPlan *plan);
 
@@ -25,6 +22,14 @@ void fl_wet_begin(FlWet *wet, int known);
  * paper is known from the frames before, of masks, motion and fills.
  */
 bool fl_wet_frame(FlWet *wet, int frame, GError **error);
+
+/** Learns how paint in frame `frame` differs from fills, before the first call of fl_wet_frame().
+ * painted: of this film or of a part; fl_wet_laid() has the paint of that frame. */
+bool fl_wet_learn(FlWet *wet, int frame, const FlWet *painted, GError **error);
+
+/** Goes on, at the first frame, with the paper of an earlier part of the film that has come to
+ * that. */
+bool fl_wet_follow(FlWet *wet, FlWet *earlier, GError **error);
 
 /** Says if it has come to any frame yet. */
 bool fl_wet_begun(const FlWet *wet);

@@ -54,14 +54,14 @@ bool fl_wet_get_mask(const FlWet *wet, int region, int frame, FlRect rect, uint8
 }
 
 /** The motion in the middle of each cell, in cells. */
-bool fl_wet_get_motion(const FlWet *wet, const FlMarker *marker, int before, int now, FlRect rect,
+bool fl_wet_get_motion(const FlWet *wet, int region, int before, int now, FlRect rect,
                        float *motion, GError **error)
 {
     const FlRect px = fl_wet_px_of(wet, rect);
     const int c = wet->cell;
     g_autofree float *full =
         fl_alloc_unset(2 * fl_rect_pixels(px), sizeof *full, "a motion", error);
-    if (!full || !wet->motion(wet->motion_data, marker->plan->region, before, now, px, full, error))
+    if (!full || !wet->motion(wet->motion_data, region, before, now, px, full, error))
         return false;
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {

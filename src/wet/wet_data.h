@@ -18,7 +18,6 @@ typedef struct FlMarker {
     const FlRegionPlan *plan;
     float size;          // share of its dials that its size in the film leaves, 0..1
     FlWetDials dials;    // of the last frame
-    float fill[3];       // absorbance
     FlMovingEdge before; // in the frame before
     bool rests;
     GArray *fronts, *stains; // of FlFrontMark and FlStainMark: those of the last frame
@@ -41,6 +40,8 @@ struct FlWet {
     uint16_t *lowest[2];      // of the page, now and before: fl_surround_lowest()
     int lowest_frame;         // of lowest[0]
     FlLaid laid;
+    float *rim; // of paint near to edges, by region and channel: its absorbance over that of the
+                // fill; NULL: as fills are
     FlStainLayer layer;
     int at; // the last frame; -1: before the first
 };
@@ -49,9 +50,9 @@ struct FlWet {
 typedef struct FlWetStep {
     FlWet *wet;
     int frame;
-    float frames;       // since the step before
-    float ground[2];    // motion of the paper, cells
-    const FlLaid *laid; // of the step before; NULL: not known
+    float frames;  // since the step before
+    bool pans;     // the paper moves
+    FlAffine came; // the place of the paper below a cell in the frame before
 } FlWetStep;
 
 /** The px of cells. */
@@ -68,8 +69,11 @@ bool fl_wet_get_mask(const FlWet *wet, int region, int frame, FlRect rect, uint8
                      GError **error);
 
 /** The motion in the middle of each cell, in cells. */
-bool fl_wet_get_motion(const FlWet *wet, const FlMarker *marker, int before, int now, FlRect rect,
+bool fl_wet_get_motion(const FlWet *wet, int region, int before, int now, FlRect rect,
                        float *motion, GError **error);
+
+/** Finds where the camera has brought the paper from since the frame before. */
+bool fl_wet_follow_camera(const FlWet *wet, int before, int frame, FlAffine *came, GError **error);
 
 /** Finds the region that carries the paper along; FL_ERROR_USAGE for an unknown name. */
 bool fl_wet_find_camera(const FlPlan *plan, int *camera, GError **error);
@@ -85,6 +89,9 @@ int fl_wet_shown_by(const FlRegionPlan *plan, int frame);
 
 /** Finds the marks of region m in a frame: the work of fl_schedule_run(), data is an FlWetStep. */
 bool fl_wet_mark_one(void *data, int m, int thread, GError **error);
+
+/** Lays the fills of a frame that is not painted in wet->laid. */
+bool fl_wet_lay_fills(FlWet *wet, int frame, GError **error);
 
 /** Shows the cells where the camera has moved them by less than a cell. */
 void fl_wet_place_cells(FlWet *wet);

@@ -42,7 +42,7 @@ void fl_wet_sheet_begin(FlWetSheet *sheet)
 {
     memset(sheet->cell, 0, fl_rect_pixels(sheet->page) * sizeof *sheet->cell);
     sheet->wet = (FlRect){0};
-    sheet->fibres.x = sheet->fibres.y = 0;
+    sheet->fibres.place = FL_AFFINE_NONE;
     sheet->shift_x = sheet->shift_y = 0;
 }
 
@@ -61,26 +61,43 @@ static int wrapped(int x, int size)
 /** The column and the row of the grain at a px of the cells, which moves with the paper. */
 static int grain_column(const FlWetSheet *sheet, int x)
 {
-    return wrapped(x - sheet->cell_px * (int)sheet->fibres.x, sheet->width);
+    return wrapped(x + sheet->cell_px * (int)sheet->fibres.place.x0, sheet->width);
 }
 
 static const FlPaperGrains *grain_row(const FlWetSheet *sheet, int y)
 {
-    const int row = wrapped(y - sheet->cell_px * (int)sheet->fibres.y, sheet->height);
+    const int row = wrapped(y + sheet->cell_px * (int)sheet->fibres.place.y0, sheet->height);
     return sheet->grain + (size_t)row * (size_t)sheet->width;
+}
+
+/** The camera has only panned. */
+static bool is_upright(const FlAffine *place)
+{
+    return place->xx == 1 && place->yy == 1 && place->xy == 0 && place->yx == 0;
+}
+
+/** The grain at a px of the cells of a sheet that has turned. */
+static FlPaperGrains grain_at(const FlWetSheet *sheet, int x, int y)
+{
+    const FlAffine *place = &sheet->fibres.place;
+    const double c = sheet->cell_px;
+    const int column = (int)floor(place->xx * x + place->xy * y + c * place->x0);
+    const int row = (int)floor(place->yx * x + place->yy * y + c * place->y0);
+    return sheet->grain[(size_t)wrapped(row, sheet->height) * (size_t)sheet->width +
+                        (size_t)wrapped(column, sheet->width)];
 }
 
 FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t at)
 {
     const int c = sheet->cell_px;
     const int x = c * (at % sheet->page.width) + c / 2, y = c * (at / sheet->page.width) + c / 2;
-    return grain_row(sheet, y)[grain_column(sheet, x)];
+    return is_upright(&sheet->fibres.place) ? grain_row(sheet, y)[grain_column(sheet, x)]
+                                            : grain_at(sheet, x, y);
 }
 
-void fl_wet_sheet_restore(FlWetSheet *sheet, FlRect wet, const FlWetCell *cells, float moved_x,
-                          float moved_y)
+void fl_wet_sheet_restore(FlWetSheet *sheet, FlRect wet, const FlWetCell *cells, FlAffine place)
 {
-    sheet->fibres.x = moved_x, sheet->fibres.y = moved_y;
+    sheet->fibres.place = place;
     sheet->wet = wet;
     fl_rect_copy(cells, wet, sheet->cell, sheet->page, sizeof *cells);
 }
@@ -96,9 +113,69 @@ bool fl_wet_sheet_move(FlWetSheet *sheet, int dx, int dy, GError **error)
     fl_rect_copy(sheet->cell, to, moved, page, sizeof *moved);
     free(sheet->cell);
     sheet->cell = moved;
-    sheet->fibres.x += (float)dx, sheet->fibres.y += (float)dy;
+    const FlAffine from = {1, 0, 0, 1, -dx, -dy};
+    sheet->fibres.place = fl_affine_multiply(&sheet->fibres.place, &from);
     sheet->wet = fl_rect_and(
         (FlRect){sheet->wet.x + dx, sheet->wet.y + dy, sheet->wet.width, sheet->wet.height}, page);
+    return true;
+}
+
+/** Adds a share of a cell's paint: ink, age, granulation and line are means by amounts. */
+static void mix_in(const FlWetCell *cell, float share, FlWetCell *sum)
+{
+    const float front = share * cell->front, wet = share * (cell->stain + cell->film);
+    const float paint = front + wet;
+    sum->front += front, sum->line += front * cell->line;
+    sum->edge += share * (cell->front > 0 ? cell->edge : -1);
+    sum->stain += share * cell->stain, sum->film += share * cell->film;
+    sum->age += wet * cell->age;
+    sum->depth += share * (wet > 0 ? cell->depth : -1);
+    sum->granulation += paint * cell->granulation;
+    for (int c = 0; c < 3; c++)
+        sum->ink[c] += paint * cell->ink[c];
+}
+
+/** The paint at a place between cells. */
+static FlWetCell cell_between(const FlWetSheet *sheet, FlPoint at)
+{
+    const int x = (int)floor(at.x), y = (int)floor(at.y);
+    const float right = (float)(at.x - x), below = (float)(at.y - y);
+    FlWetCell sum = {0};
+    for (int k = 0; k < 4; k++) {
+        const int column = x + k % 2, row = y + k / 2;
+        const float share = (k % 2 ? right : 1 - right) * (k / 2 ? below : 1 - below);
+        const bool there =
+            column >= 0 && row >= 0 && column < sheet->page.width && row < sheet->page.height;
+        const size_t cell = (size_t)row * (size_t)sheet->page.width + (size_t)column;
+        mix_in(there ? &sheet->cell[cell] : &(FlWetCell){0}, share, &sum);
+    }
+    const float wet = MAX(sum.stain + sum.film, 1e-9f), paint = MAX(sum.front + wet, 1e-9f);
+    sum.line /= MAX(sum.front, 1e-9f), sum.age /= wet, sum.granulation /= paint;
+    for (int c = 0; c < 3; c++)
+        sum.ink[c] /= paint;
+    return sum;
+}
+
+bool fl_wet_sheet_turn(FlWetSheet *sheet, const FlAffine *from, GError **error)
+{
+    const FlRect page = sheet->page;
+    FlWetCell *moved = fl_alloc(fl_rect_pixels(page), sizeof *moved, "the paper's marks", error);
+    FlRect wet = {0, 0, 0, 0};
+    if (!moved)
+        return false;
+    for (int y = 0; y < page.height; y++)
+        for (int x = 0; x < page.width; x++) {
+            const FlPoint at = fl_affine_apply(from, (FlPoint){x, y});
+            const FlRect near = {(int)floor(at.x), (int)floor(at.y), 2, 2};
+            if (!fl_rect_meet(near, sheet->wet))
+                continue;
+            moved[(size_t)y * (size_t)page.width + (size_t)x] = cell_between(sheet, at);
+            wet = fl_rect_or(wet, (FlRect){x, y, 1, 1});
+        }
+    free(sheet->cell);
+    sheet->cell = moved;
+    sheet->wet = wet;
+    sheet->fibres.place = fl_affine_multiply(&sheet->fibres.place, from);
     return true;
 }
 
@@ -312,8 +389,13 @@ static void read_grain(const FlWetSheet *sheet, int x, int y, FlColumns columns,
                        const LayerRows *rows)
 {
     const FlPaperGrains *grain = grain_row(sheet, y);
+    const bool turned = !is_upright(&sheet->fibres.place);
     int column = grain_column(sheet, sheet->cell_px * columns.first + x);
-    for (int i = columns.first; i < columns.last; i++) {
+    for (int i = columns.first; i < columns.last && turned; i++) {
+        const FlPaperGrains own = grain_at(sheet, sheet->cell_px * i + x, y);
+        rows->hollow[i] = share_of(own.hollow), rows->spot[i] = share_of(own.spot);
+    }
+    for (int i = columns.first; i < columns.last && !turned; i++) {
         rows->hollow[i] = share_of(grain[column].hollow);
         rows->spot[i] = share_of(grain[column].spot);
         column += sheet->cell_px;

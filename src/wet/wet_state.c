@@ -14,8 +14,9 @@ typedef struct MarkerState {
 
 typedef struct SheetState {
     int32_t at;
-    float camera_x, camera_y, paper_x, paper_y;
+    float camera_x, camera_y;
     FlRect wet;
+    FlAffine paper;
 } SheetState;
 
 /** Header and parts of a state. */
@@ -79,9 +80,8 @@ GBytes *fl_wet_save(const FlWet *wet, GError **error)
     *state.sheet = (SheetState){.at = wet->at,
                                 .camera_x = wet->camera_x,
                                 .camera_y = wet->camera_y,
-                                .paper_x = wet->sheet.fibres.x,
-                                .paper_y = wet->sheet.fibres.y,
-                                .wet = wet->sheet.wet};
+                                .wet = wet->sheet.wet,
+                                .paper = wet->sheet.fibres.place};
     for (int m = 0; m < wet->n_markers; m++) {
         const FlMarker *marker = &wet->marker[m];
         state.marker[m] = (MarkerState){.rect = marker->before.rect,
@@ -114,13 +114,23 @@ static bool are_sane(const float *value, size_t n)
     return sane;
 }
 
+static bool is_sane(const FlAffine *place)
+{
+    const double *value = &place->xx;
+    bool sane = true;
+    for (size_t k = 0; k < sizeof *place / sizeof *value; k++)
+        sane = sane && fabs(value[k]) < 1e6;
+    return sane;
+}
+
 /** Says if the header fits the film. */
 static bool header_fits(const State *state, const FlWet *wet)
 {
     const SheetState *sheet = state->sheet;
     const FlRect page = wet->sheet.page;
     bool fits = sheet->at >= -1 && sheet->at < fl_drawing_frames(wet->plan->drawing) &&
-                lies_in(sheet->wet, page) && are_sane(&sheet->camera_x, 4);
+                lies_in(sheet->wet, page) && are_sane(&sheet->camera_x, 2) &&
+                is_sane(&sheet->paper);
     for (int m = 0; m < wet->n_markers; m++)
         fits = fits && lies_in(state->marker[m].rect, page) && state->marker[m].n_fronts >= 0 &&
                (size_t)state->marker[m].n_fronts <= fl_rect_pixels(page) &&
@@ -182,7 +192,6 @@ bool fl_wet_load(FlWet *wet, GBytes *bytes, GError **error)
     wet->at = state.sheet->at;
     wet->camera_x = state.sheet->camera_x, wet->camera_y = state.sheet->camera_y;
     fl_wet_place_cells(wet);
-    fl_wet_sheet_restore(&wet->sheet, state.sheet->wet, state.cells, state.sheet->paper_x,
-                         state.sheet->paper_y);
+    fl_wet_sheet_restore(&wet->sheet, state.sheet->wet, state.cells, state.sheet->paper);
     return fl_wet_show(wet, error);
 }
