@@ -18,7 +18,7 @@ typedef struct Scene {
     FlLaid laid;
     FlWetShape shape;
     FlWetDials dials;
-    GArray *fronts, *stains;
+    GArray *fronts, *stains, *below;
 } Scene;
 
 static void draw_disk(float x0, float radius, uint8_t *mask)
@@ -57,6 +57,7 @@ static Scene *scene_new(void)
     memset(scene->touches, 3, PIXELS);
     scene->fronts = g_array_new(FALSE, FALSE, sizeof(FlFrontMark));
     scene->stains = g_array_new(FALSE, FALSE, sizeof(FlStainMark));
+    scene->below = g_array_new(FALSE, FALSE, sizeof(FlFrontMark));
     return scene;
 }
 
@@ -65,6 +66,7 @@ static void scene_free(Scene *scene)
     fl_wet_sheet_clear(&scene->sheet);
     g_array_unref(scene->fronts);
     g_array_unref(scene->stains);
+    g_array_unref(scene->below);
     g_free(scene);
 }
 
@@ -89,11 +91,12 @@ static void mark(Scene *scene, float x0, float x1, float grown)
         scene->beyond[p] = fmaxf(-fmaxf(scene->beyond[p], scene->distance[p]), 0);
     g_array_set_size(scene->fronts, 0);
     g_array_set_size(scene->stains, 0);
+    g_array_set_size(scene->below, 0);
     const FlWetAround around = {scene->beyond, scene->touches};
     g_assert_true(fl_moving_edge_init(&edge, &scene->shape, &before, NULL));
     g_assert_true(fl_marks_add_front(&scene->shape, &edge, &around, &scene->dials, &scene->sheet,
                                      scene->fronts, NULL));
-    fl_marks_add_stain(&scene->shape, &edge, &around, &scene->dials, scene->stains);
+    fl_marks_add_stain(&scene->shape, &edge, &around, &scene->dials, scene->stains, scene->below);
 }
 
 /* The sum of the fronts outside the disk, right of it less left of it, and of both. */

@@ -321,7 +321,8 @@ static bool know_before(FlFrames *frames, int frame, double *paint_s, GError **e
     const bool loops = plan->options.loop;
     g_auto(FlComposite) plain = {0};
     if (!frames->wet || fl_wet_begun(frames->wet) || frames->small ||
-        (!loops && (frame > 0 || fl_drawing_earlier(plan->drawing) == 0)))
+        (!loops && (frame > 0 || fl_drawing_earlier(plan->drawing) == 0 ||
+                    plan->options.registration == FL_REGISTRATION_ON))) // each has its own place
         return true;
     return compose(frames, frame, -1, false, &plain, paint_s, error) &&
            (loops ? fl_wet_learn(frames->wet, fl_drawing_shown(plan->drawing, frame), frames->wet,

@@ -264,7 +264,7 @@ static bool mark_moving(const FlWetStep *step, FlMarker *marker, int before, int
     marker->partner = MAX(known, fl_ease(0.02f, 0.2f, shape.overlap));
     fl_marks_lose_fronts(&shape, &edge, marker->fronts, marker->stains);
     g_array_set_size(marker->fronts, 0);
-    fl_marks_add_stain(&shape, &edge, &around, &marker->dials, marker->stains);
+    fl_marks_add_stain(&shape, &edge, &around, &marker->dials, marker->stains, marker->fronts);
     marker->rests = !moves && edge.fastest < 0.02f * wet->sheet.px;
     const bool marked =
         marker->dials.front <= 0 || fl_marks_add_front(&shape, &edge, &around, &marker->dials,

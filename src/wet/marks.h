@@ -26,9 +26,11 @@ bool fl_marks_add_front(const FlWetShape *shape, const FlMovingEdge *edge,
                         const FlWetAround *around, const FlWetDials *dials, const FlWetSheet *sheet,
                         GArray *marks, GError **error);
 
-/** Adds what a frame has uncovered to an array of FlStainMark. */
+/** Adds what a frame has uncovered to an array of FlStainMark, and to one of FlFrontMark what is
+ * wet below the rims of receding edges. */
 void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
-                        const FlWetAround *around, const FlWetDials *dials, GArray *marks);
+                        const FlWetAround *around, const FlWetDials *dials, GArray *marks,
+                        GArray *fronts);
 
 /** Adds marks that take the fronts of the frame before from the paper where the shape has jumped
  * away: what vanishes leaves no outline. */

@@ -3,6 +3,7 @@
 #include "base/curves.h"
 #include "guides/guides.h"
 #include <math.h>
+#include <string.h>
 
 /** A pixel that paint may have left, in the time since the frame before. */
 typedef struct Passing {
@@ -102,8 +103,19 @@ static float under(const FlWetShape *shape, const FlEdgePoint *point)
     return recedes * MIN(6 * shape->px, 0.4f * point->half_width);
 }
 
+/** Wets a cell below the rim of a receding edge until it is uncovered: a hole there shows paint. */
+static void wet_below(const FlEdgePoint *point, const FlWetDials *dials, int32_t at, float depth,
+                      GArray *fronts)
+{
+    FlFrontMark mark = {.at = at, .density = MIN(dials->stain, 1) * cover_of(depth), .edge = 3};
+    memcpy(mark.ink, point->ink, sizeof mark.ink);
+    if (mark.density > 0)
+        g_array_append_val(fronts, mark);
+}
+
 void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
-                        const FlWetAround *around, const FlWetDials *dials, GArray *marks)
+                        const FlWetAround *around, const FlWetDials *dials, GArray *marks,
+                        GArray *fronts)
 {
     const FlRect rect = shape->rect;
     for (int y = 0; y < rect.height && edge->n > 0; y++)
@@ -113,13 +125,16 @@ void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
                 continue;
             const FlEdgePoint *point = &edge->point[edge->nearest[p]];
             const float inset = MIN(2.5f * shape->px, 0.45f * point->half_width);
-            const float now = edge->distance[p] - inset - under(shape, point);
+            const float below = under(shape, point), now = edge->distance[p] - inset - below;
             const float reach = fabsf(point->u) + fabsf(point->v) + 2;
             const bool far = -now > reach && shape->distance_before[p] < inset - reach;
             if (now >= 0.5f || far)
                 continue;
             const Passing pixel = {shape, point, edge->distance, inset, (float)x, (float)y};
-            pass(&pixel, dials, (rect.y + y) * shape->page.width + rect.x + x, now, marks);
+            const int32_t at = (rect.y + y) * shape->page.width + rect.x + x;
+            pass(&pixel, dials, at, now, marks);
+            if (below > 0.5f)
+                wet_below(point, dials, at, edge->distance[p] - inset, fronts);
         }
 }
 
