@@ -17,6 +17,7 @@
 #define SLIGHT 4.0f   // for a flat one with none of these: its colour jitters
 #define OVERLAP 0.6f  // of boxes at the same place in the picture, intersection over union
 #define STAYS 0.9f    // of boxes of a leaf that need not be compared with others
+#define MANY 500      // unpaired leaves from which on paint and place in the document suffice
 #define TOO_MANY 4000 // unpaired leaves on a side; beyond that only exact matches are followed
 
 typedef struct Pair {
@@ -131,16 +132,22 @@ static void pair_exactly(Follow *f, int t, float least, int *row)
     }
 }
 
+static int count_unpaired(const int *row, guint n)
+{
+    int left = 0;
+    for (guint i = 0; i < n; i++)
+        left += row[i] < 0;
+    return left;
+}
+
 /** Pairs the remaining leaves, the most alike first. */
 static void pair_by_likeness(Follow *f, int t, int *row)
 {
     GArray *parts = f->survey->frame[t].parts;
     g_autoptr(GArray) pairs = g_array_new(FALSE, FALSE, sizeof(Pair));
-    int left = 0;
-    for (guint i = 0; i < parts->len; i++)
-        left += row[i] < 0;
-    if (left >= TOO_MANY)
+    if (count_unpaired(row, parts->len) >= MANY)
         pair_exactly(f, t, 0, row);
+    const int left = count_unpaired(row, parts->len);
     for (guint k = 0; k < f->tracks->len && left > 0 && left < TOO_MANY; k++) {
         const FlTrack *track = &g_array_index(f->tracks, FlTrack, k);
         for (guint i = 0; i < parts->len && track->last_frame < t; i++) {
