@@ -32,7 +32,7 @@ verify now --layers 'l/{region}_%d.png'
 result $? 'layers count as well, and frames are the same with them'
 
 paint now -y --provenance made.json && sum=$(sha256sum <now/w_0003.png) && grep -q "now/w_0003.png\":\"${sum%% *}\"" made.json &&
-    python3 -c 'import json; made = json.load(open("made.json")); assert len(made["sha256"]) == 6 and "w_0001.svg" in made["facts"]' &&
+    python3 -c 'import json; made = json.load(open("made.json")); assert len(made["sha256"]) == 6 and "w_0001.svg" in dict(made["facts"])' &&
     verify now && whole 6
 result $? 'all that they were made from is listed on request'
 

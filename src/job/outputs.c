@@ -141,15 +141,19 @@ bool fl_write_provenance(const FlPlan *plan, GError **error)
 {
     const FlRenderOptions *o = &plan->options;
     g_auto(FlAtomicFile) file = {0};
-    g_autoptr(GString) json = g_string_new("{\"facts\":{");
+    g_autoptr(GString) json = g_string_new("{\"facts\":[");
     if (!o->provenance)
         return true;
     g_autoptr(FlFacts) facts = fl_plan_facts(plan);
     for (guint k = 0; k < facts->list->len; k++) {
         const FlFact *fact = &g_array_index(facts->list, FlFact, k);
-        fl_json_text(json, fact->name, fact->value);
+        g_string_append(json, k ? ",[" : "[");
+        fl_json_string(json, fact->name);
+        g_string_append_c(json, ',');
+        fl_json_string(json, fact->value);
+        g_string_append_c(json, ']');
     }
-    g_string_append(json, "},\"sha256\":{");
+    g_string_append(json, "],\"sha256\":{");
     if (!put_files(json, plan, error) ||
         !fl_atomic_open(&file, o->provenance, o->overwrite != FL_OVERWRITE_REFUSE, error))
         return false;

@@ -513,7 +513,7 @@ static void show_with_variables(Cascade *c, xmlNode *use, Style *style)
     const xmlNode *target = fl_is(use, "use") ? fl_shown_by_use(use, c->ids) : NULL;
     const xmlNode *kept = target ? g_hash_table_lookup(c->shown, target) : NULL;
     int depth = 0;
-    for (const Style *s = style; s && kept; s = s->around)
+    for (const Style *s = style->around; s && kept; s = s->around)
         if (s->shows == target || ++depth > fl_limit(FL_LIMIT_DEPTH))
             kept = NULL; // a cycle, or too deep: fl_document_normalise() tells
     for (const xmlNode *at = use; at && kept; at = at->parent)
