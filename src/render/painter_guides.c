@@ -53,7 +53,9 @@ static bool film_mask(const FlPainter *painter, int shown, uint8_t *coverage, GE
 
 static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **error)
 {
-    return film_mask(data, frame_of(data, frame), coverage, error);
+    const FlPainter *painter = data;
+    return !fl_stop_asked(&painter->shapes->stop, error) &&
+           film_mask(painter, frame_of(painter, frame), coverage, error);
 }
 
 /* The flow into a picture, cropped to the painter's rectangle. */

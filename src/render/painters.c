@@ -30,8 +30,7 @@ static bool check_memory(const FlPainters *painters, GError **error)
 static bool make_guides_of(void *data, int p, int thread, GError **error)
 {
     FlPainters *painters = data;
-    return !painters->fresh[p] || (!fl_stop_asked(&painters->shapes.stop, error) &&
-                                   fl_painter_prepare(painters->painter[p], error));
+    return !painters->fresh[p] || fl_painter_prepare(painters->painter[p], error);
 }
 
 /* While it is painted, a region takes 80 bytes a pixel of its rectangle, and about as many while
