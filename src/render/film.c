@@ -40,6 +40,7 @@ struct FlFilm {
 FlFilm *fl_film_open(const char *const *inputs)
 {
     FlFilm *film = g_new0(FlFilm, 1);
+    film->options.size = sizeof film->options;
     film->inputs = g_strdupv((char **)inputs);
     film->strings = g_ptr_array_new_with_free_func(g_free);
     film->texts = g_string_chunk_new(TEXTS_BYTES);
