@@ -9,7 +9,7 @@
  * where it is beyond a bound; the number of fills within the bound; and the deviation of the
  * logarithm of the density where a fill is deeper than the paint's border, in 2000 pixels or more,
  * as a share of the exemplar's own. Status 1 if a fill without a wash is beyond 3, or more than
- * half of the fills of a sequence with a wash are beyond 2.5.
+ * a fifth of the fills of a sequence with a wash are beyond 2.5.
  */
 #include "base/alloc.h"
 #include "delta_e.h"
@@ -24,7 +24,7 @@
 enum { MARGIN_PX = 2, ENOUGH = 64, LARGE = 2000 };
 
 #define BOUND 3.0         // of each fill
-#define BOUND_OF_WASH 2.5 // of half of them, when a wash makes them uneven
+#define BOUND_OF_WASH 2.5 // of four fifths of them, when a wash makes them uneven
 
 static void stop_on(GError *error)
 {
@@ -236,7 +236,7 @@ static void judge(const char *folder, const char *style, Tally *all)
     }
     g_autofree char *name = g_path_get_basename(folder);
     print(name, &tally);
-    all->off |= tally.within < (tally.washed ? (tally.fills + 1) / 2 : tally.fills);
+    all->off |= 5 * tally.within < (tally.washed ? 4 : 5) * tally.fills;
     all->fills += tally.fills, all->within += tally.within;
     all->worst = MAX(all->worst, tally.worst);
     all->shares += tally.shares, all->large += tally.large;

@@ -103,8 +103,7 @@ static void spread_rows(float *plane, const float *mask, int width, int height, 
     }
 }
 
-/* As the recursive filter of Gastal and Oliveira (2011), of deviation sigma_px of the page; not
- * normalised. */
+/* The recursive filter of [GO11] with a deviation of sigma_px of the page, not normalised. */
 static void spread(const FlWashField *field, float *plane, float sigma_px)
 {
     const int width = field->wash->width, height = field->wash->height;
