@@ -1,6 +1,7 @@
 #include "synth/synth.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "base/rng.h"
 #include "base/schedule.h"
 #include "guides/half_guides.h"
@@ -110,9 +111,11 @@ static bool carry_last(const FlSynth *synth, const FlGuides *guides, FlRect rect
     return true;
 }
 
+#define DRIES_FROM 0.75f // carry from which on paint dries, wholly where it is 1
+
 bool fl_synth_dries(const FlExemplar *exemplar, const FlParams *params)
 {
-    return params->carry >= 1 && params->w_age > 0 && exemplar->level[0].window > 1;
+    return params->carry > DRIES_FROM && params->w_age > 0 && exemplar->level[0].window > 1;
 }
 
 static bool dries(const FlSynth *synth)
@@ -124,7 +127,9 @@ static bool dries(const FlSynth *synth)
 static bool dry(FlSynth *synth, const FlGuides *guides, FlRect rect, FlCarried *carried,
                 uint8_t **wet, bool *goes_on, GError **error)
 {
-    const FlDrying drying = {guides, synth->side / 480, synth->width, synth->exemplar->wets};
+    const float share = fl_ease(DRIES_FROM, 1, synth->params->carry);
+    const FlDrying drying = {guides, synth->side / 480, synth->width,
+                             share * synth->exemplar->wets};
     *goes_on = false;
     *wet = fl_alloc((size_t)synth->width * (size_t)synth->height, 1, "a mask", error);
     if (!*wet || !dries(synth))
