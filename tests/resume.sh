@@ -7,7 +7,7 @@
 started() { # started FOLDER ARGUMENT...: paints $output in the background, as process $job
     local to=$1
     shift
-    "$program" film -s "$style" -o "$to/${output:-w_%04d.png}" --progress none "$@" >out 2>err &
+    "$program" "${film:-film}" -s "$style" -o "$to/${output:-w_%04d.png}" --progress none "$@" >out 2>err &
     job=$!
 }
 
@@ -49,6 +49,20 @@ for signal in INT TERM; do
     paint $signal && grep -q 'resuming an earlier run' err && same $signal whole
     result $? "the frames after SIG$signal and a second run are those of a whole render"
 done
+
+mkdir puff
+for i in 1 2 3 4 5 6; do
+    echo "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 48 48' width='96' height='96'><path fill='#567'" \
+        "d='M10 44C$((14 - i)) $((30 - 3 * i)) $((16 + i)) $((14 - 2 * i)) 26 $((16 - i))S46 30 34 44Z'/></svg>" >puff/w_000$i.svg
+done
+film=puff fluid=(--engine lazyfluids --fluid smoke)
+paint puff_plain --engine lazyfluids
+paint puff_whole "${fluid[@]}"
+stop puff_resumed INT 3 "${fluid[@]}"
+paint puff_resumed "${fluid[@]}" && grep -q 'resuming an earlier run' err && same puff_resumed puff_whole &&
+    ! same puff_resumed puff_plain
+result $? 'a fluid flows on where a render is resumed'
+unset film
 
 for i in 1 2 3 4 5 6; do
     flow slide_$i.flo '\0\0\x60\x40\0\0\0\0'
