@@ -52,6 +52,15 @@ static const char *fill_of(const FlComposeInput *input, int region)
     return paint[0] == '#' ? paint : NULL;
 }
 
+/* In steps of a twentieth: a film of which one frame is edited keeps the washes of the others. */
+static float in_steps(float px)
+{
+    float size = 12;
+    while (1.05f * size <= px)
+        size *= 1.05f;
+    return size;
+}
+
 /* The side of a square that is as large as the shapes of a fill: the same in all frames. */
 static float size_of(const FlComposeInput *input, int region)
 {
@@ -63,7 +72,7 @@ static float size_of(const FlComposeInput *input, int region)
         if (other->region == region || (fill && its && g_str_equal(fill, its)))
             most = MAX(most, other->anchor.side);
     }
-    return fl_clamp(most / input->paper_px, 12, 600);
+    return in_steps(fl_clamp(most / input->paper_px, 12, 600));
 }
 
 /* The frame's points that surround the draws of a wash. */
