@@ -35,28 +35,18 @@ struct FlSvg {
     GPtrArray *files;   // that it refers to
 };
 
-/** The purpose of a handle. */
-typedef enum FlPurpose {
-    FL_TO_DRAW,
-    FL_TO_DRAW_BARE, // without the masks of FlLeaves.mask
-    FL_N_PURPOSES
-} FlPurpose;
-
 /** A handle of the document with that text; NULL with FL_ERROR_INPUT. */
 RsvgHandle *fl_svg_make_handle(const FlSvg *svg, const char *text, size_t bytes, GError **error);
 
-/** The handle for this part of the leaves, which svg owns; NULL with FL_ERROR_INPUT. */
-RsvgHandle *fl_svg_handle(FlSvg *svg, FlPart part, FlPurpose purpose, GError **error);
+/** The handle for this part of the leaves, which svg owns; bare: without the masks of
+ * FlLeaves.mask. NULL with FL_ERROR_INPUT. */
+RsvgHandle *fl_svg_handle(FlSvg *svg, FlPart part, bool bare, GError **error);
 
 /** Likewise the handle whose layers are the groups of that depth, see fl_group_masks_flood(). */
 RsvgHandle *fl_svg_mask_handle(FlSvg *svg, int depth, GError **error);
 
 /** Sets FL_ERROR_INPUT in plain words. */
 void fl_svg_set_error(const FlSvg *svg, const GError *reason, GError **error);
-
-/** Draws a part of a leaf with that handle: without the masks around it but for FL_TO_DRAW. */
-bool fl_svg_draw_leaf(FlSvg *svg, const FlLeaf *leaf, FlPart part, FlPurpose purpose, cairo_t *cr,
-                      FlPageSize page, GError **error);
 
 /** Frees the surfaces of all covers. */
 void fl_svg_drop_covers(FlSvg *svg);

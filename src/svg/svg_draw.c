@@ -16,13 +16,15 @@ static bool render(const FlSvg *svg, RsvgHandle *handle, const char *id, cairo_t
     return false;
 }
 
-bool fl_svg_draw_leaf(FlSvg *svg, const FlLeaf *leaf, FlPart part, FlPurpose purpose, cairo_t *cr,
-                      FlPageSize page, GError **error)
+/** Draws a part of a leaf, without the masks of FlLeaves.mask. */
+static bool draw_leaf(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, FlPageSize page,
+                      GError **error)
 {
-    RsvgHandle *handle = fl_svg_handle(svg, part, purpose, error);
+    const bool bare = leaf->mask >= 0;
+    RsvgHandle *handle = fl_svg_handle(svg, part, bare, error);
     if (!handle)
         return false;
-    if (render(svg, handle, leaf->mask < 0 ? leaf->layer : leaf->id, cr, page, error))
+    if (render(svg, handle, bare ? leaf->id : leaf->layer, cr, page, error))
         return true;
     g_prefix_error(error, leaf->name[0] ? "#%s in " : "a shape without an id%s in ", leaf->name);
     return false;
@@ -143,7 +145,7 @@ static bool draw_masked(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr
     if (!cover)
         return false;
     cairo_push_group_with_content(cr, cairo_surface_get_content(target));
-    const bool drawn = fl_svg_draw_leaf(svg, leaf, part, FL_TO_DRAW_BARE, cr, page, error);
+    const bool drawn = draw_leaf(svg, leaf, part, cr, page, error);
     cairo_pop_group_to_source(cr);
     cairo_mask_surface(cr, cover, 0, 0);
     return drawn;
@@ -154,7 +156,7 @@ bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, FlPag
 {
     if (leaf->all)
         return draw_all(svg, cr, page, error);
-    return leaf->mask < 0 ? fl_svg_draw_leaf(svg, leaf, part, FL_TO_DRAW, cr, page, error)
+    return leaf->mask < 0 ? draw_leaf(svg, leaf, part, cr, page, error)
                           : draw_masked(svg, leaf, part, cr, page, error);
 }
 

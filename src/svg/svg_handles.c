@@ -42,10 +42,10 @@ RsvgHandle *fl_svg_make_handle(const FlSvg *svg, const char *text, size_t bytes,
     return handle;
 }
 
-/** Also of a handle for masks: `part` is their depth, `purpose` FL_N_PURPOSES. */
-static gpointer variant_key(int part, int purpose)
+/** kind: 0, 1 without masks, 2 masks alone, of a depth in place of a part. */
+static gpointer variant_key(int part, int kind)
 {
-    return GINT_TO_POINTER(part * (FL_N_PURPOSES + 1) + purpose + 1);
+    return GINT_TO_POINTER(3 * part + kind + 1);
 }
 
 /** Leaves out fills or strokes. */
@@ -68,24 +68,24 @@ static RsvgHandle *add_variant(FlSvg *svg, gpointer key, xmlDoc *doc, GError **e
     return handle;
 }
 
-RsvgHandle *fl_svg_handle(FlSvg *svg, FlPart part, FlPurpose purpose, GError **error)
+RsvgHandle *fl_svg_handle(FlSvg *svg, FlPart part, bool bare, GError **error)
 {
-    if (part == FL_PART_WHOLE && purpose == FL_TO_DRAW)
+    if (part == FL_PART_WHOLE && !bare)
         return svg->handle;
-    gpointer key = variant_key((int)part, (int)purpose);
+    gpointer key = variant_key((int)part, bare);
     RsvgHandle *handle = g_hash_table_lookup(svg->variants, key);
     if (handle)
         return handle;
     g_autoptr(xmlDoc) copy = xmlCopyDoc(svg->doc, 1);
     keep_part(copy, svg->leaves, part);
-    if (purpose != FL_TO_DRAW)
+    if (bare)
         fl_group_masks_drop(copy, svg->leaves);
     return add_variant(svg, key, copy, error);
 }
 
 RsvgHandle *fl_svg_mask_handle(FlSvg *svg, int depth, GError **error)
 {
-    gpointer key = variant_key(depth, FL_N_PURPOSES);
+    gpointer key = variant_key(depth, 2);
     RsvgHandle *handle = g_hash_table_lookup(svg->variants, key);
     if (handle)
         return handle;
