@@ -179,7 +179,6 @@ void fl_film_set_calls(FlFilm *film, const FlFilmCalls *calls)
 static FlRenderOptions options_of(const FlFilm *film)
 {
     FlRenderOptions options = film->options;
-    options.size = sizeof options;
     options.inputs = (const char *const *)film->inputs;
     options.settings = (const FlSetting *)(const void *)film->settings->data;
     options.n_settings = film->settings->len;
