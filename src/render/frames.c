@@ -1,6 +1,7 @@
 #include "render/frames.h"
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/memory.h"
 #include "base/page.h"
 #include "base/schedule.h"
@@ -252,15 +253,20 @@ static bool open_wet(FlFrames *frames, GError **error)
     return frames->wet;
 }
 
-/* The paper of a film that starts late, whose first frame is composed without marks. */
+/* The paper of a film that starts late, whose first frame is composed without marks. Frames that
+ * were not asked for are no reason to fail: it is clean without them. */
 static bool know_earlier(FlFrames *frames, GError **error)
 {
     int first;
-    g_autoptr(FlPlan) plan = fl_plan_earlier(frames->plan, &first, error);
+    const FlRenderOptions *o = &frames->plan->options;
+    g_autoptr(GError) reason = NULL;
+    g_autoptr(FlPlan) plan = fl_plan_earlier(frames->plan, &first, &reason);
+    if (!plan || !fl_plan_rasterise(plan, &reason)) {
+        fl_tell(o->note, o->data, "the first frame has clean paper: %s", reason->message);
+        return true;
+    }
     g_autoptr(FlMotionSource) motion =
-        plan && fl_plan_rasterise(plan, error)
-            ? fl_motion_source_new(plan->drawing, plan->masks, true, error)
-            : NULL;
+        fl_motion_source_new(plan->drawing, plan->masks, true, error);
     g_autoptr(FlWet) wet =
         motion ? fl_wet_new(plan, frames->background.paper, NULL, wet_motion, motion, error) : NULL;
     return wet && fl_wet_learn(wet, first, frames->wet, error) && fl_wet_frame(wet, first, error) &&
