@@ -7,12 +7,14 @@
 #include <math.h>
 #include <string.h>
 
-#define MOST_DEPTH 64 // of <use> in <use> and of groups, when boxes are measured
+#define MOST_DEPTH 64       // of <use> in <use> and of groups, when boxes are measured
+#define MOST_ELEMENTS 50000 // in a box: a <use> that shows <use> doubles them at each step
 
 /* ---- boxes ----------------------------------------------------------------------------------- */
 
 typedef struct Bounds {
     double left, top, right, bottom;
+    int n_elements; // seen so far
 } Bounds;
 
 static void add_point(Bounds *b, FlPoint p)
@@ -98,7 +100,7 @@ static void add_children(Bounds *bounds, const xmlNode *node, const FlCssUnits *
 static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *units,
                         const FlAffine *map, int depth)
 {
-    if (depth > MOST_DEPTH)
+    if (depth > MOST_DEPTH || bounds->n_elements++ > MOST_ELEMENTS)
         return;
     g_autoptr(FlOutlines) outlines = outlines_of(node, units);
     for (int i = 0; i < outlines->n_cubics; i++)
@@ -117,7 +119,7 @@ static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *u
 
 bool fl_css_fill_box(const xmlNode *node, const FlCssUnits *units, FlCssBox *box)
 {
-    Bounds b = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    Bounds b = {INFINITY, INFINITY, -INFINITY, -INFINITY, 0};
     const FlAffine none = FL_AFFINE_NONE;
     add_element(&b, node, units, &none, 0);
     const bool found = b.right >= b.left && b.bottom >= b.top;
