@@ -44,6 +44,10 @@ static gboolean read_option(const char *name, const char *value, gpointer data, 
 {
     FlArgs *args = data;
     const FlOption *option = option_named(name);
+    if (strcmp(option->name, "config") == 0 && args->render.config) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: is given twice; expected one file", name);
+        return FALSE;
+    }
     if (option->type == FL_OPTION_FLAG)
         value = "on";
     if (option->type == FL_OPTION_SWITCH) {

@@ -1,5 +1,6 @@
 #include "drawing/sequence.h"
 
+#include "base/error.h"
 #include "base/suggest.h"
 #include "io/frame_range.h"
 #include "io/pattern.h"
@@ -542,9 +543,15 @@ FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs,
         if (!add_input(found, inputs[0], warnings, error))
             return NULL;
     } else {
-        for (int i = 0; i < n_inputs; i++)
+        for (int i = 0; i < n_inputs; i++) {
+            if (g_file_test(inputs[i], G_FILE_TEST_IS_DIR)) {
+                fl_fail(error, FL_ERROR_INPUT,
+                        "%s: is a folder; expected one folder or several files", inputs[i]);
+                return NULL;
+            }
             if (!add_file(found, inputs[i], error))
                 return NULL;
+        }
         number_files(found);
     }
     FlInnerFrames frames;
