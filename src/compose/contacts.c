@@ -115,7 +115,7 @@ static float exp_of(float x)
 static void lay_pixels(const FlContact *contact, const FlRunning *to, float mean, int x, int y,
                        int n, size_t p)
 {
-    Edge edge;
+    Edge edge = {0}; // cppcheck does not see that rows are filled
     const float most = 2 * contact->reach_px;
     const uint64_t key = contact->key;
     bool any = false;

@@ -196,9 +196,10 @@ static int wash_of_region(FlWashes *washes, const FlComposeInput *input, int reg
                    .key = fl_key(input->seed, g_str_hash(fill ? fill : painted->name))};
     if (wash.style.wash <= 0 && wash.style.hue <= 0)
         return -1;
+    const char *style = (const char *)&wash.style; // floats alone
     for (int w = 0; w < washes->n; w++)
         if (washes->wash[w].key == wash.key &&
-            memcmp(&washes->wash[w].style, &wash.style, sizeof wash.style) == 0)
+            memcmp((const char *)&washes->wash[w].style, style, sizeof wash.style) == 0)
             return w;
     washes->wash = g_renew(FlWash, washes->wash, washes->n + 1);
     washes->wash[washes->n] = wash;

@@ -47,8 +47,8 @@ bool fl_transport_style_read(FlTransportStyle *style, const char *folder, GError
 {
     static const FlKeyTable table = {keys, G_N_ELEMENTS(keys)};
     g_autofree char *path = g_build_filename(folder, "style.ini", NULL);
-    FlKeySection section = {"transport", &table, style, FL_ERROR_STYLE};
     *style = (FlTransportStyle){.size = 256, .ring_px = 16, .taper_px = 6, .pace = 1, .effort = 1};
+    FlKeySection section = {"transport", &table, style, FL_ERROR_STYLE};
     if (g_file_test(path, G_FILE_TEST_EXISTS) && !fl_key_sections_read(path, &section, 1, error))
         return false;
     style->size -= style->size % FL_POTENTIAL_COARSEST;

@@ -167,7 +167,8 @@ static bool rests(const Pair *pair, int a, int b)
     for (int k = 0; k < 2; k++) {
         const FlAnchor one = fl_drawing_anchor(pair->plan->drawing, both[k]->region, a);
         const FlAnchor other = fl_drawing_anchor(pair->plan->drawing, both[k]->region, b);
-        same = same && memcmp(&one, &other, sizeof one) == 0 &&
+        same = same && one.x == other.x && one.y == other.y && one.cosine == other.cosine &&
+               one.sine == other.sine &&
                fl_mask_store_same(pair->plan->masks, both[k]->region, fl_wet_shown_by(both[k], a),
                                   fl_wet_shown_by(both[k], b));
     }

@@ -184,7 +184,9 @@ static bool do_step(FlWet *wet, int before, int frame, GError **error)
         !fl_wet_follow_camera(wet, before, frame, &step.came, error) ||
         !move_sheet(wet, &step.came, error))
         return false;
-    step.pans = memcmp(&step.came, &FL_AFFINE_NONE, sizeof step.came) != 0;
+    const FlAffine *came = &step.came;
+    step.pans = came->xx != 1 || came->xy != 0 || came->yx != 0 || came->yy != 1 || came->x0 != 0 ||
+                came->y0 != 0;
     fl_wet_sheet_dry(&wet->sheet, step.frames);
     return mark_all(&step, error);
 }
