@@ -27,9 +27,25 @@ def until(script, seconds=60):
 
 
 def place(of, x=0.5, y=0.5):
+    """A point of an element in the window, once the page around it stands still."""
     browser.ask(f"{of}.scrollIntoView({{ block: 'nearest' }})")
-    return browser.ask(f"(() => {{ const b = {of}.getBoundingClientRect();"
-                       f"return [b.left + {x} * b.width, b.top + {y} * b.height]; }})()")
+    last, still = None, 0
+    while still < 3:
+        at = browser.ask(f"(() => {{ const b = {of}.getBoundingClientRect();"
+                         f"return [b.left + {x} * b.width, b.top + {y} * b.height]; }})()")
+        still = still + 1 if at == last else 0
+        last = at
+        time.sleep(0.05)
+    return at
+
+
+def slide(of, x, wanted):
+    """Clicks on a slider; again, if the page moved under the click."""
+    for _ in range(6):
+        browser.mouse(place(of, x))
+        if until(wanted, 10):
+            return True
+    return False
 
 
 def control(key, part="input, select"):
@@ -70,13 +86,11 @@ tell("a click in the picture picks the region", name is not None and browser.ask
 section = f"region {name}"
 
 slider = control("carry", "input[type=range]")
-browser.mouse(place(slider, 0.3))
-tell("a click on a slider chooses", until(f'live.settings["{section}"]'))
+tell("a click on a slider chooses", slide(slider, 0.3, f'live.settings["{section}"]'))
 tell("what it shows", 0.2 < browser.ask(f'Number(live.settings["{section}"].carry)') < 0.4)
-browser.mouse(place(slider, 0.99))
-tell("its end as well", until(f'live.settings["{section}"].carry === "1"'))
-browser.mouse(place(slider, 0.86))
-tell("and beside its thumb there", until(f'live.settings["{section}"].carry < 1'))
+tell("its end as well", slide(slider, 0.99, f'live.settings["{section}"].carry === "1"'))
+tell("and beside its thumb there", slide(slider, 0.86, f'live.settings["{section}"].carry > 0.5 && '
+                                         f'live.settings["{section}"].carry < 1'))
 browser.ask(control("tint", "select") + ".focus()")
 browser.key("ArrowDown")
 browser.key("ArrowDown")
