@@ -82,17 +82,24 @@ static void a_gradient_of_one_colour_is_flat(void)
                    "fill #0000ff@255");
 }
 
-static void gradients_may_be_in_another_frame(void)
+static void gradients_may_be_in_other_frames(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
-    g_autofree char *other = scratch_svg(folder, "frame0.svg",
-                                         "<radialGradient id='g'><stop stop-color='red'/><stop "
-                                         "offset='1' stop-color='#00f'/></radialGradient>");
+    g_autofree char *one = scratch_svg(folder, "frame0.svg",
+                                       "<radialGradient id='g'><stop stop-color='red'/><stop "
+                                       "offset='1' stop-color='#00f'/></radialGradient>");
+    g_autofree char *two = scratch_svg(folder, "frame1.svg",
+                                       "<linearGradient id='g'><stop stop-color='#0f0'/><stop "
+                                       "offset='1' stop-color='#000'/></linearGradient>");
     g_autofree char *path =
-        scratch_svg(folder, "frame1.svg", "<rect " BOX " fill='url(frame0.svg#g)'/>");
+        scratch_svg(folder, "frame2.svg",
+                    "<rect " BOX " fill='url(frame0.svg#g)'/><rect " BOX
+                    " fill='url(frame1.svg#g)'/><rect " BOX " fill='url(missing.svg#g)'/>");
     g_autoptr(FlSvg) svg = open_svg(path, NULL);
     g_autofree char *paint = describe(svg);
-    g_assert_cmpstr(paint, ==, "fill radial 0:ff0000ff 100:0000ffff@255");
+    g_assert_cmpstr(paint, ==,
+                    "fill radial 0:ff0000ff 100:0000ffff@255 | "
+                    "fill linear 0:00ff00ff 100:000000ff@255");
 }
 
 static void patterns_and_filters_are_images(void)
@@ -447,7 +454,7 @@ int main(int argc, char **argv)
          fill_and_stroke_are_taken_apart_unless_they_are_one_colour);
     TEST("gradients-are-known-by-their-stops", gradients_are_known_by_their_stops);
     TEST("a-gradient-of-one-colour-is-flat", a_gradient_of_one_colour_is_flat);
-    TEST("gradients-may-be-in-another-frame", gradients_may_be_in_another_frame);
+    TEST("gradients-may-be-in-another-frame", gradients_may_be_in_other_frames);
     TEST("patterns-and-filters-are-images", patterns_and_filters_are_images);
     TEST("hidden-and-undrawn-content-is-no-leaf", hidden_and_undrawn_content_is_no_leaf);
     TEST("use-and-switch-show-their-content", use_and_switch_show_their_content);

@@ -23,12 +23,11 @@ struct FlSvg {
     size_t original_bytes;
     RsvgHandle *handle; // of the normalised document
     RsvgHandle *before; // of the original, made when first needed
-    GHashTable *ids;    // of the document, made when first needed, as is what elements inherit
+    GHashTable *ids;    // of the document; made when paints are first read, as are the next two
+    GHashTable *others; // real path of another file -> its elements, in svg_paint.c
     FlInheritance inheritance;
-    xmlDoc *other;         // a file from which it takes gradients; NULL: not read
-    GHashTable *other_ids; // of that
-    int n_nameless;        // groups without an id
-    GHashTable *variants;  // handles of the document without some parts or masks
+    int n_nameless;       // groups without an id
+    GHashTable *variants; // handles of the document without some parts or masks
     FlLeaves *leaves;
     FlMaskCover *cover; // by FlLeaves.mask; NULL: cannot be drawn
     size_t cover_bytes; // of their surfaces

@@ -101,8 +101,7 @@ void fl_svg_free(FlSvg *svg)
     g_free(svg->cover);
     g_clear_pointer(&svg->ids, g_hash_table_unref);
     fl_inheritance_clear(&svg->inheritance);
-    g_clear_pointer(&svg->other_ids, g_hash_table_unref);
-    g_clear_pointer(&svg->other, xmlFreeDoc);
+    g_clear_pointer(&svg->others, g_hash_table_unref);
     fl_leaves_free(svg->leaves);
     g_clear_pointer(&svg->files, g_ptr_array_unref);
     if (svg->doc)

@@ -82,19 +82,44 @@ static void add_stretch(Ramp *ramp, double offset, const double rgba[4])
     ramp->offset = offset;
 }
 
-/** The elements by id of another file that the drawing refers to. */
+/** Another file from which the drawing takes gradients; all NULL if it cannot be read. */
+typedef struct Other {
+    xmlDoc *doc;
+    GHashTable *ids;
+} Other;
+
+static void other_free(void *data)
+{
+    Other *other = data;
+    g_clear_pointer(&other->ids, g_hash_table_unref);
+    g_clear_pointer(&other->doc, xmlFreeDoc);
+    g_free(other);
+}
+
+static Other *read_other(FlSvg *svg, const char *file)
+{
+    Other *other = g_new0(Other, 1);
+    other->doc = fl_document_read(file, 1, NULL, NULL);
+    if (other->doc) {
+        fl_cascade(other->doc, file, 1, NAN, NULL, svg->files, NULL);
+        other->ids = fl_document_ids(other->doc);
+    }
+    return other;
+}
+
+/** The elements by id of the file that a reference names; NULL if it may not or cannot be read. */
 static GHashTable *elements_of_other(FlSvg *svg, const char *target)
 {
     bool is_there = false;
     g_autofree char *file = fl_reference_file(svg->path, target, &is_there);
-    if (svg->other || !is_there || !fl_reference_is_inside(svg->path, file))
-        return svg->other_ids;
-    svg->other = fl_document_read(file, 1, NULL, NULL);
-    if (svg->other) {
-        fl_cascade(svg->other, file, 1, NAN, NULL, svg->files, NULL);
-        svg->other_ids = fl_document_ids(svg->other);
+    if (!is_there || !fl_reference_is_inside(svg->path, file))
+        return NULL;
+    Other *other = g_hash_table_lookup(svg->others, file);
+    if (!other) {
+        other = read_other(svg, file);
+        g_hash_table_insert(svg->others, g_steal_pointer(&file), other);
     }
-    return svg->other_ids;
+    return other->ids;
 }
 
 /** The element of "#id", or of "file.svg#id", as Flash writes gradients; NULL without one. */
@@ -488,6 +513,7 @@ int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_P
     }
     if (!svg->ids) {
         svg->ids = fl_document_ids(svg->doc);
+        svg->others = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, other_free);
         svg->inheritance = fl_inheritance_of(svg->dpi, (FlPageSize){1, 1});
     }
     const xmlNode *node = g_hash_table_lookup(svg->ids, leaf->id);
