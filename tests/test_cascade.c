@@ -146,6 +146,7 @@ static void the_strongest_declaration_wins(void)
         {"path{fill:#111111}}rect{}", "#111111"},
         {"path{fill:#111111;all:unset}", "inherit"},
         {"path{all:unset;fill:#111111}", "#111111"},
+        {"path{fill:#111111;all:red}", "#111111"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(sheets); i++) {
         g_autofree char *content = g_strdup_printf("<style>%s</style>" SHAPE, sheets[i][0]);
@@ -246,6 +247,7 @@ static void colours_are_those_of_a_browser(void)
         {"color-mix(in srgb, red, transparent)", "rgba(255, 0, 0, 0.5)"},
         {"color-mix(in hsl, red, lime)", "rgb(255, 255, 0)"},
         {"color-mix(in hsl longer hue, red, lime)", "rgb(0, 0, 255)"},
+        {"color-mix(in hsl, color(srgb 2 0 0), color(srgb 2 0 0))", "rgb(255, 0, 0)"},
         {"light-dark(red, blue)", "rgb(255, 0, 0)"},
         {"CanvasText", "rgb(0, 0, 0)"},
         {"#12345678", "#12345678"},

@@ -3,11 +3,11 @@
 #include <math.h>
 #include <string.h>
 
-#define PAGE_PX 1000.0 // of the page on which shapes are measured, one user unit a pixel
-#define SIZE_PX 0.35   // by how much the size of a shape may differ; files have one decimal
-#define MOVE_PX 0.6    // by how much two moves may differ to be one
-#define MOST_RESTS 20  // frames after which a shape does not count for more
-#define MOST_KNOWN 4000
+#define PAGE_PX 1000.0  // of the page on which shapes are measured, one user unit a pixel
+#define SIZE_PX 0.35    // by how much the size of a shape may differ; files have one decimal
+#define MOVE_PX 0.6     // by how much two moves may differ to be one
+#define MOST_RESTS 20   // frames after which a shape does not count for more
+#define MOST_KNOWN 4000 // shapes that are remembered
 
 /** A shape in its place on the page of the first frame, where it was seen last. */
 typedef struct Known {

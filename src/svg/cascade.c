@@ -76,11 +76,26 @@ static void warn_of_animation(Cascade *c, const char *value)
                             "the CSS animation is not played: the frame's own values are drawn");
 }
 
+/** Replaces inherit, initial, unset and revert by values of SVG 1.1. Returns: NULL for any other
+ * value. */
+static const char *resolve_keyword(const FlCssProperty *property, const char *text)
+{
+    const bool undone = strcmp(text, "unset") == 0 || g_str_has_prefix(text, "revert");
+    const bool inherits = strcmp(text, "inherit") == 0 || (undone && property->inherited);
+    const bool initial = strcmp(text, "initial") == 0 || (undone && !property->inherited);
+    return inherits ? "inherit" : initial ? (property->initial ? property->initial : "") : NULL;
+}
+
 static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d);
 
+/** Takes a declaration of `all`, whose value is a keyword or a variable. */
 static void declare_every_property(Cascade *c, GArray *values, const FlCssDeclaration *all)
 {
-    const FlCssProperty *property;
+    const FlCssProperty *property = fl_css_property_at(0);
+    if (!resolve_keyword(property, all->value) && !strstr(all->value, "var(")) {
+        warn(c, "all", all->value, "is not a value of that property");
+        return;
+    }
     for (int i = 0; (property = fl_css_property_at(i)); i++)
         if (property->kind != FL_CSS_ANIMATION && strcmp(property->name, "direction") != 0 &&
             strcmp(property->name, "unicode-bidi") != 0)
@@ -237,16 +252,6 @@ static void set_variables(Style *style, const GArray *values)
             g_hash_table_insert(style->variables, (gpointer)v->name, text ? text : g_strdup(""));
         }
     }
-}
-
-/** Replaces inherit, initial, unset and revert by values of SVG 1.1. Returns: NULL for any other
- * value. */
-static const char *resolve_keyword(const FlCssProperty *property, const char *text)
-{
-    const bool undone = strcmp(text, "unset") == 0 || g_str_has_prefix(text, "revert");
-    const bool inherits = strcmp(text, "inherit") == 0 || (undone && property->inherited);
-    const bool initial = strcmp(text, "initial") == 0 || (undone && !property->inherited);
-    return inherits ? "inherit" : initial ? (property->initial ? property->initial : "") : NULL;
 }
 
 /** Lengths in units that librsvg knows stay as they are, which keeps percentages exact. */

@@ -121,9 +121,11 @@ static void from_hsl(const double hsl[3], double rgb[3])
     }
 }
 
-/** To lightness, saturation and hue, in the order of other polar spaces. */
-static void to_hsl(const double rgb[3], double lsh[3])
+/** To lightness, saturation and hue, in the order of other polar spaces; of the nearest levels that
+ * sRGB has. */
+static void to_hsl(const double wide[3], double lsh[3])
 {
+    const double rgb[3] = {CLAMP(wide[0], 0, 1), CLAMP(wide[1], 0, 1), CLAMP(wide[2], 0, 1)};
     const double high = MAX(rgb[0], MAX(rgb[1], rgb[2])), low = MIN(rgb[0], MIN(rgb[1], rgb[2]));
     const double d = high - low, l = (high + low) / 2;
     const double hue = d <= 0           ? 0
@@ -422,7 +424,7 @@ static bool read_colour(const char *text, Rgba *colour, int depth)
 
 static uint8_t level_of(double share)
 {
-    return (uint8_t)floor(255 * CLAMP(share, 0, 1) + 0.5);
+    return (uint8_t)floor(255 * fmin(fmax(share, 0), 1) + 0.5); // NAN: 0
 }
 
 static char *text_of(const Rgba *colour)

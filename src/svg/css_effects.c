@@ -61,8 +61,11 @@ static void set_matrix(xmlNode *node, const FlAffine *m)
 static char *inherited(const xmlNode *node, const char *name)
 {
     char *value = NULL;
-    for (; node && node->type == XML_ELEMENT_NODE && !value; node = node->parent)
+    for (; node && node->type == XML_ELEMENT_NODE && !value; node = node->parent) {
         value = fl_property(node, name);
+        if (value && strcmp(value, "inherit") == 0)
+            g_clear_pointer(&value, g_free);
+    }
     return value;
 }
 
@@ -271,7 +274,8 @@ static const char *apply_clip(const FlCssEffects *effects, xmlNode *node, const 
     return NULL;
 }
 
-/** Declares the first url() of `mask`. Returns: false if more words would change the picture. */
+/** Declares the first word of `mask`. Returns: "mask" if it is a function other than url(), or if
+ * the other words would change the picture; else NULL. */
 static const char *apply_mask(const FlCssEffects *effects, xmlNode *node)
 {
     static const char *const plain[] = {"luminance", "match-source", "no-clip", "add", NULL};

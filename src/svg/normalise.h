@@ -30,8 +30,8 @@ bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *pa
                            FlWarnings *warnings, GError **error);
 
 /**
- * Makes a <use> a <g> with `shown`, a deep copy of what it shows, which is
- * then owned by the document. Returns: the number of elements of the copy.
+ * Makes a <use> a <g> that contains `shown`, a deep copy of the element that it refers to; the
+ * document then owns the copy. Returns: the number of elements of the copy.
  */
 int fl_use_show(xmlNode *use, xmlNode *shown);
 
