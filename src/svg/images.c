@@ -72,7 +72,8 @@ static void replace_webp(const Check *check, xmlNode *node, xmlAttr *a, const ch
     if (png)
         xmlSetNsProp(node, a->ns, a->name, (const xmlChar *)png);
     else
-        warn(check, node, href, "is damaged, or this build reads no WebP, and is left out");
+        warn(check, node, href,
+             "is animated or damaged, or this build reads no WebP, and is left out");
 }
 
 /** An image in the drawing itself: a wrong label, which librsvg would believe, is put right. */

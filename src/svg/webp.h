@@ -9,7 +9,7 @@
 /** Reads the size from a header. Returns: false for what is no WebP image, or without libwebp. */
 bool fl_webp_size(const uint8_t *data, size_t bytes, int size[2]);
 
-/** The image, or its first frame, as the data URI of a PNG; NULL: it is damaged. */
+/** The image as the data URI of a PNG; NULL: it is damaged, or an animation. */
 char *fl_webp_as_png(const uint8_t *data, size_t bytes);
 
 #endif
