@@ -2,8 +2,11 @@
 #include "io/child_process.h"
 #include <fluidy/limits.h>
 #include <glib.h>
+#include <signal.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 static FlChild *start(const char *script, FlChildStream stream, const FlPatience *patience)
@@ -109,6 +112,23 @@ static void a_child_opens_the_file_that_it_is_given(void)
     close(fd);
 }
 
+/* A program that reads a stranger's file, as a child of a process that ends. */
+static void a_confined_child_ends_with_its_parent(void)
+{
+    const char *const arguments[] = {"sh", "-c", "exec sleep 5", NULL};
+    g_assert_cmpint(prctl(PR_SET_CHILD_SUBREAPER, 1), ==, 0);
+    const pid_t parent = fork();
+    if (parent == 0) {
+        FlChild *child = fl_child_start_reader(arguments, "/dev/null", NULL);
+        _exit(child ? 0 : 1);
+    }
+    int status = 0;
+    g_assert_cmpint(waitpid(parent, &status, 0), ==, parent);
+    g_assert_cmpint(status, ==, 0);
+    g_assert_cmpint(waitpid(-1, &status, 0), >, 0);
+    g_assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -120,5 +140,6 @@ int main(int argc, char **argv)
     TEST(a_wait_can_be_interrupted);
     TEST(a_child_that_computes_is_waited_for);
     TEST(a_child_opens_the_file_that_it_is_given);
+    TEST(a_confined_child_ends_with_its_parent);
     return g_test_run();
 }

@@ -35,11 +35,11 @@ struct FlChild {
 static void set_up(void *confinement)
 {
     setpgid(0, 0);
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGKILL); // which a confined process is refused
+#endif
     if (confinement)
         fl_confinement_enter(confinement);
-#ifdef __linux__
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-#endif
 }
 
 static int nameless_file(void)
@@ -61,7 +61,7 @@ static FlConfinement *confine(const char *program, const char *reads)
 {
     g_autofree char *path = reads ? g_find_program_in_path(program) : NULL;
     g_autofree char *real = path ? realpath(path, NULL) : NULL;
-    const char *const paths[] = {reads, path, NULL};
+    const char *const paths[] = {reads, NULL};
     return real ? fl_confinement_new(paths, real, fl_limit(FL_LIMIT_MEMORY), FL_LANDLOCK_ANY)
                 : NULL;
 }
@@ -122,7 +122,8 @@ char *fl_child_stderr_tail(const FlChild *child)
     const off_t start = MAX(end - (off_t)sizeof text + 1, 0);
     const ssize_t n = pread(child->errors, text, sizeof text - 1, start);
     text[MAX(n, 0)] = '\0';
-    return g_strchomp(g_utf8_make_valid(text, -1));
+    const char *cut = start > 0 ? strchr(text, '\n') : NULL; // ends a line whose begin is lost
+    return g_strchomp(g_utf8_make_valid(cut && cut[1] ? cut + 1 : text, -1));
 }
 
 static bool has_ended(FlChild *child)
