@@ -45,7 +45,7 @@ typedef struct FlWashEstimate {
 /**
  * Looks at the last frame. Noise of wet paint has to be calmed, marks must stay, and paint whose
  * hue wanders is painted with one that does, since a tint loses the recording's. wet: width of its
- * fronts. The defaults where an eighth of the frame or less is 16 px deep in paint.
+ * fronts. The defaults where less than an eighth of the frame is 16 px deep in paint.
  * FL_ERROR_NO_MEMORY.
  */
 bool fl_wash_estimate(const FlStyle *style, float wet, FlWashEstimate *found, GError **error);
