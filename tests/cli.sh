@@ -476,7 +476,7 @@ else
         on_paper jpeg-ground -b open/Deep.JPG && ! same sheet/jpeg1.png sheet/auto1.png &&
         ! same sheet/jpeg-ground1.png sheet/auto1.png &&
         head -c 100 open/Deep.JPG >open/cut.jpg && ! on_paper cut --paper open/cut.jpg &&
-        grep -q 'open/cut.jpg: cannot be read as pictures' err
+        grep -q 'open/cut.jpg: cannot be read as pictures: ' err && ! grep -q 'marking filters' err
     result $? 'they may be JPEG pictures'
     ffmpeg -v error -y -i sheet/auto1.png -lossless 1 -pix_fmt bgra open/a.webp && cp sheet/auto1.png open/a.png
     for end in png webp; do

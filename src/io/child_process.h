@@ -55,7 +55,7 @@ bool fl_child_read(FlChild *child, void *data, size_t bytes, size_t *got, GError
 /** Closes the stream and waits for the end. */
 bool fl_child_finish(FlChild *child, GError **error);
 
-/** The last kilobyte that the child wrote to its standard error; to be freed. */
+/** The last lines that the child wrote to its standard error, a kilobyte at most; to be freed. */
 char *fl_child_stderr_tail(const FlChild *child);
 
 /** Kills the child if it still runs. NULL is fine. */

@@ -51,6 +51,18 @@ void fl_ffmpeg_close(FlFfmpeg *ffmpeg)
     g_free(ffmpeg);
 }
 
+/* The first error, which causes the others, without the parts of ffmpeg that it names as
+ * "[mjpeg @ 0x55df] ". Only libraries warn. To be freed. */
+static char *cause_of(const char *messages)
+{
+    const char *end;
+    while (g_str_has_prefix(messages, "Warning: ") && (end = strchr(messages, '\n')))
+        messages = end + 1;
+    while (*messages == '[' && (end = strstr(messages, "] ")))
+        messages = end + 2;
+    return g_strndup(messages, strcspn(messages, "\n"));
+}
+
 /* Waits for the child after its last output. whole: the output ended with a picture. */
 static bool end(const FlFfmpeg *ffmpeg, bool whole, GError **error)
 {
@@ -59,11 +71,15 @@ static bool end(const FlFfmpeg *ffmpeg, bool whole, GError **error)
     if (well && whole)
         return true;
     g_autofree char *words = fl_child_stderr_tail(ffmpeg->child);
+    g_autofree char *cause = cause_of(words);
     if (strstr(words, "matches no streams"))
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: has no video stream", ffmpeg->path);
     else
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be read as pictures: %s",
-                    ffmpeg->path, well ? "the last one is truncated" : below->message);
+                    ffmpeg->path,
+                    well     ? "the last one is truncated"
+                    : *cause ? cause
+                             : below->message);
     return false;
 }
 
