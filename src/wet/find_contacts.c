@@ -18,15 +18,23 @@
 #define TOUCH_PX 1.5f // between shapes that touch
 #define BLEED .6f     // of regions that a config calls wet together
 
-/* The two regions of a contact. */
-typedef struct Pair {
+/* The regions of a film, and their contacts in a frame so far. */
+typedef struct Finder {
     const FlPlan *plan;
+    const FlComposeInput *input;
     const FlCover *cover; // of the frame
     int frame;
-    const FlRegionPlan *own, *other;
     FlWet grid;  // its cells alone
-    bool over;   // own lies over the other one
     float scale; // px of the page per cell
+    FlContacts *contacts;
+} Finder;
+
+/* The two regions of a contact. */
+typedef struct Pair {
+    const Finder *f;
+    const FlRegionPlan *own, *other;
+    bool over;   // own lies over the other one
+    float reach; // of the paint, px of the page
 } Pair;
 
 /* Paint's nearness in a frame, planes of a part of the cells. */
@@ -64,9 +72,9 @@ static void find_near(const Pair *pair, const float *own, Near *near)
             const size_t i = (size_t)y * (size_t)rect.width + (size_t)x;
             float foot[2];
             find_foot(near, x, y, foot);
-            const float gap = -fl_wet_plane_at(own, rect, foot[0], foot[1]) * pair->scale;
+            const float gap = -fl_wet_plane_at(own, rect, foot[0], foot[1]) * pair->f->scale;
             const float apart = 6 * MAX(gap - TOUCH_PX, 0);
-            near->near[i] = fl_fall((fabsf(near->distance[i]) * pair->scale + apart) / CALM_PX);
+            near->near[i] = fl_fall((fabsf(near->distance[i]) * pair->f->scale + apart) / CALM_PX);
         }
 }
 
@@ -75,10 +83,10 @@ static void find_near(const Pair *pair, const float *own, Near *near)
 static bool find_seen(const Pair *pair, int frame, FlRect rect, const uint8_t *own, uint8_t *seen,
                       GError **error)
 {
-    const FlRect px = fl_wet_px_of(&pair->grid, rect);
+    const FlRect px = fl_wet_px_of(&pair->f->grid, rect);
     const size_t n = fl_rect_pixels(rect);
-    if (frame != pair->frame) {
-        const bool read = fl_wet_get_mask(&pair->grid, pair->other->region,
+    if (frame != pair->f->frame) {
+        const bool read = fl_wet_get_mask(&pair->f->grid, pair->other->region,
                                           fl_wet_shown_by(pair->other, frame), rect, seen, error);
         for (size_t i = 0; read && i < n && pair->over; i++)
             seen[i] = (uint8_t)MAX(seen[i] - own[i], 0);
@@ -87,8 +95,8 @@ static bool find_seen(const Pair *pair, int frame, FlRect rect, const uint8_t *o
     g_autofree uint8_t *share = fl_alloc_unset(fl_rect_pixels(px), 1, "a contact", error);
     if (!share)
         return false;
-    fl_cover_of_region(pair->cover, pair->other->region, px, share);
-    fl_wet_find_means(&pair->grid, share, rect, seen);
+    fl_cover_of_region(pair->f->cover, pair->other->region, px, share);
+    fl_wet_find_means(&pair->f->grid, share, rect, seen);
     return true;
 }
 
@@ -102,7 +110,7 @@ static bool near_init(const Pair *pair, int frame, FlRect rect, Near *near, GErr
     *near = (Near){.rect = rect};
     if (!depth || !(near->distance = fl_alloc_unset(n, sizeof(float), "a contact", error)) ||
         !(near->near = fl_alloc_unset(n, sizeof(float), "a contact", error)) ||
-        !fl_wet_get_mask(&pair->grid, pair->own->region, fl_wet_shown_by(pair->own, frame), rect,
+        !fl_wet_get_mask(&pair->f->grid, pair->own->region, fl_wet_shown_by(pair->own, frame), rect,
                          own, error) ||
         !find_seen(pair, frame, rect, own, seen, error) ||
         !fl_distance(seen, rect.width, rect.height, near->distance, error) ||
@@ -112,51 +120,42 @@ static bool near_init(const Pair *pair, int frame, FlRect rect, Near *near, GErr
     return true;
 }
 
-/* The place of a cell's middle when an anchor was at rest, and back: px of the frame. */
-static void to_rest(const FlAnchor *at, float x, float y, float rest[2])
+/* The map from cells to the places that their middles had when an anchor was at rest, px of the
+ * frame. */
+static FlAffine rest_of(const FlAnchor *at, double cell)
 {
-    const float dx = x - at->x, dy = y - at->y;
-    rest[0] = at->rest_x + at->cosine * dx + at->sine * dy;
-    rest[1] = at->rest_y + at->cosine * dy - at->sine * dx;
+    const double c = (double)at->cosine, s = (double)at->sine;
+    const double dx = cell / 2 - (double)at->x, dy = cell / 2 - (double)at->y;
+    return (FlAffine){.xx = c * cell,
+                      .yx = -s * cell,
+                      .xy = s * cell,
+                      .yy = c * cell,
+                      .x0 = (double)at->rest_x + c * dx + s * dy,
+                      .y0 = (double)at->rest_y + c * dy - s * dx};
 }
 
-static void from_rest(const FlAnchor *at, const float rest[2], float *x, float *y)
+/* The cells of a frame to which both regions are near. */
+static FlRect part_of(const Pair *pair, int frame)
 {
-    const float dx = rest[0] - at->rest_x, dy = rest[1] - at->rest_y;
-    *x = at->x + at->cosine * dx - at->sine * dy;
-    *y = at->y + at->sine * dx + at->cosine * dy;
+    const Finder *f = pair->f;
+    const FlMaskStore *masks = f->plan->masks;
+    const FlRect page = f->grid.sheet.page;
+    const int room = (int)ceilf(2 * pair->reach / f->scale) + 2;
+    const FlRect own =
+        fl_mask_store_box(masks, pair->own->region, fl_wet_shown_by(pair->own, frame));
+    const FlRect other =
+        fl_mask_store_box(masks, pair->other->region, fl_wet_shown_by(pair->other, frame));
+    if (own.width == 0 || other.width == 0)
+        return (FlRect){0, 0, 0, 0};
+    return fl_rect_and(fl_rect_grown(fl_wet_cells_of(&f->grid, own), room, page),
+                       fl_rect_grown(fl_wet_cells_of(&f->grid, other), room, page));
 }
 
-/* A cell of the frame where its paint was in an earlier one. */
-static void earlier_cell(const FlAnchor *now, const FlAnchor *then, float cell, float *x, float *y)
+/* The k-th frame before; below 0: the film begins later. */
+static int frame_before(const Finder *f, int k)
 {
-    float rest[2];
-    to_rest(now, (*x + .5f) * cell, (*y + .5f) * cell, rest);
-    from_rest(then, rest, x, y);
-    *x = *x / cell - .5f, *y = *y / cell - .5f;
-}
-
-/* The cells of an earlier frame in which the paint of a part of this frame was. */
-static FlRect earlier_part(const FlAnchor *now, const FlAnchor *then, float cell, FlRect rect,
-                           FlRect page)
-{
-    float low[2] = {1e6f, 1e6f}, high[2] = {-1e6f, -1e6f};
-    for (int k = 0; k < 4; k++) {
-        float x = (float)(rect.x + (k & 1) * rect.width),
-              y = (float)(rect.y + (k >> 1) * rect.height);
-        earlier_cell(now, then, cell, &x, &y);
-        low[0] = MIN(low[0], x), low[1] = MIN(low[1], y);
-        high[0] = MAX(high[0], x), high[1] = MAX(high[1], y);
-    }
-    return fl_rect_grown(
-        fl_rect_touched((double)low[0], (double)low[1], (double)high[0], (double)high[1]), 2, page);
-}
-
-/* The k-th frame before one; below 0: the film begins later. */
-static int frame_before(const FlPlan *plan, int frame, int k)
-{
-    const int n = fl_drawing_frames(plan->drawing);
-    return plan->options.loop ? ((frame - k) % n + n) % n : frame - k;
+    const int n = fl_drawing_frames(f->plan->drawing), before = f->frame - k;
+    return f->plan->options.loop ? (before % n + n) % n : before;
 }
 
 /* Returns: true if neither region of a pair has moved between two frames. */
@@ -165,55 +164,58 @@ static bool rests(const Pair *pair, int a, int b)
     const FlRegionPlan *both[] = {pair->own, pair->other};
     bool same = true;
     for (int k = 0; k < 2; k++) {
-        const FlAnchor one = fl_drawing_anchor(pair->plan->drawing, both[k]->region, a);
-        const FlAnchor other = fl_drawing_anchor(pair->plan->drawing, both[k]->region, b);
+        const FlAnchor one = fl_drawing_anchor(pair->f->plan->drawing, both[k]->region, a);
+        const FlAnchor other = fl_drawing_anchor(pair->f->plan->drawing, both[k]->region, b);
         same = same && one.x == other.x && one.y == other.y && one.cosine == other.cosine &&
                one.sine == other.sine &&
-               fl_mask_store_same(pair->plan->masks, both[k]->region, fl_wet_shown_by(both[k], a),
-                                  fl_wet_shown_by(both[k], b));
+               fl_mask_store_same(pair->f->plan->masks, both[k]->region,
+                                  fl_wet_shown_by(both[k], a), fl_wet_shown_by(both[k], b));
     }
     return same;
 }
 
-/* Adds how near the paint of a part of a frame was to the edge in an earlier one. */
-static bool add_earlier(const Pair *pair, int frame, int then, FlRect part, float *sum,
-                        GError **error)
+/* Finds how near the paint of a part of the frame was to the edge in an earlier one. */
+static bool find_earlier(const Pair *pair, int then, FlRect part, float *earlier, GError **error)
 {
-    const FlAnchor now = fl_drawing_anchor(pair->plan->drawing, pair->own->region, frame);
-    const FlAnchor was = fl_drawing_anchor(pair->plan->drawing, pair->own->region, then);
-    const float cell = (float)pair->grid.cell;
+    const Finder *f = pair->f;
+    const FlAnchor at = fl_drawing_anchor(f->plan->drawing, pair->own->region, f->frame);
+    const FlAnchor was = fl_drawing_anchor(f->plan->drawing, pair->own->region, then);
+    const FlAffine rest = rest_of(&at, f->grid.cell), rest_then = rest_of(&was, f->grid.cell);
+    const FlRect rect = part_of(pair, then);
+    FlAffine back;
     g_auto(Near) near = {0};
-    const FlRect rect = earlier_part(&now, &was, cell, part, pair->grid.sheet.page);
-    if (rect.width == 0)
-        return true;
+    memset(earlier, 0, fl_rect_pixels(part) * sizeof *earlier);
+    if (rect.width == 0 || !fl_affine_invert(&rest_then, &back))
+        return true; // one of them was not there
     if (!near_init(pair, then, rect, &near, error))
         return false;
+    const FlAffine came = fl_affine_multiply(&back, &rest);
     for (int y = 0; y < part.height; y++)
         for (int x = 0; x < part.width; x++) {
-            float u = (float)(part.x + x), v = (float)(part.y + y);
-            earlier_cell(&now, &was, cell, &u, &v);
-            u -= (float)rect.x, v -= (float)rect.y;
+            const FlPoint place = fl_affine_apply(&came, (FlPoint){part.x + x, part.y + y});
+            const float u = (float)(place.x - rect.x), v = (float)(place.y - rect.y);
             if (u >= 0 && v >= 0 && u < (float)rect.width && v < (float)rect.height)
-                sum[y * part.width + x] += fl_wet_plane_at(near.near, rect, u, v);
+                earlier[y * part.width + x] = fl_wet_plane_at(near.near, rect, u, v);
         }
     return true;
 }
 
 /* The mean nearness through the last frames, along the region's own motion. */
-static bool find_mean(const Pair *pair, int frame, FlRect part, float *mean, GError **error)
+static bool find_mean(const Pair *pair, const Near *near, float *mean, GError **error)
 {
-    const size_t n = fl_rect_pixels(part);
-    g_autofree float *last = fl_alloc(n, sizeof *last, "a contact", error);
+    const Finder *f = pair->f;
+    const size_t n = fl_rect_pixels(near->rect);
+    g_autofree float *last = fl_alloc_unset(n, sizeof *last, "a contact", error);
     if (!last)
         return false;
-    int frames = 0;
-    for (int k = 0; k < RUN_FRAMES && frame_before(pair->plan, frame, k) >= 0; k++, frames++) {
-        const int then = frame_before(pair->plan, frame, k);
-        if (k == 0 || !rests(pair, then, frame_before(pair->plan, frame, k - 1))) {
-            memset(last, 0, n * sizeof *last);
-            if (!add_earlier(pair, frame, then, part, last, error))
-                return false;
-        }
+    memcpy(last, near->near, n * sizeof *last);
+    memcpy(mean, near->near, n * sizeof *mean);
+    int frames = 1;
+    for (; frames < RUN_FRAMES && frame_before(f, frames) >= 0; frames++) {
+        const int then = frame_before(f, frames);
+        if (!rests(pair, then, frame_before(f, frames - 1)) &&
+            !find_earlier(pair, then, near->rect, last, error))
+            return false;
         for (size_t i = 0; i < n; i++)
             mean[i] += last[i];
     }
@@ -226,35 +228,34 @@ static bool find_mean(const Pair *pair, int frame, FlRect part, float *mean, GEr
 static void find_feet(const Pair *pair, const Near *near, FlContact *contact)
 {
     const FlRect rect = near->rect;
-    const float cell = (float)pair->grid.cell;
+    const FlAffine rest = rest_of(&contact->anchor, pair->f->grid.cell);
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
             const size_t i = (size_t)y * (size_t)rect.width + (size_t)x;
-            float foot[2], place[2];
+            float foot[2];
             find_foot(near, x, y, foot);
-            to_rest(&contact->anchor, ((float)rect.x + foot[0] + .5f) * cell,
-                    ((float)rect.y + foot[1] + .5f) * cell, place);
-            for (int k = 0; k < 2; k++)
-                contact->foot[k][i] = place[k] * contact->page;
+            const FlPoint place = fl_affine_apply(
+                &rest, (FlPoint){rect.x + (double)foot[0], rect.y + (double)foot[1]});
+            contact->foot[0][i] = (float)place.x * contact->page;
+            contact->foot[1][i] = (float)place.y * contact->page;
         }
 }
 
 /* The planes of a contact, whose cells are a part of the page. */
-static bool find_planes(const Pair *pair, int frame, FlRect part, FlContact *contact,
-                        GError **error)
+static bool find_planes(const Pair *pair, FlRect part, FlContact *contact, GError **error)
 {
     const size_t n = fl_rect_pixels(part);
     g_auto(Near) near = {0};
-    if (!(contact->away = fl_alloc(3 * n, sizeof(float), "a contact", error)))
+    if (!(contact->away = fl_alloc_unset(3 * n, sizeof(float), "a contact", error)))
         return false;
     contact->foot[0] = contact->away + n, contact->foot[1] = contact->away + 2 * n;
-    if (!near_init(pair, frame, part, &near, error) ||
-        !find_mean(pair, frame, part, contact->away, error))
+    if (!near_init(pair, pair->f->frame, part, &near, error) ||
+        !find_mean(pair, &near, contact->away, error))
         return false;
     find_feet(pair, &near, contact);
     for (size_t i = 0; i < n; i++) {
         const float lasting = -CALM_PX * logf(MAX(contact->away[i], 1e-6f));
-        contact->away[i] = MAX(lasting, fabsf(near.distance[i]) * pair->scale);
+        contact->away[i] = MAX(lasting, fabsf(near.distance[i]) * pair->f->scale);
     }
     return true;
 }
@@ -308,34 +309,10 @@ static int place_of(const FlDrawList *draws, int region)
     return place;
 }
 
-/* The regions of a film, and their contacts in a frame so far. */
-typedef struct Finder {
-    const FlPlan *plan;
-    const FlComposeInput *input;
-    const FlCover *cover;
-    int frame;
-    FlContacts *contacts;
-} Finder;
-
-/* The cells in which paint of one region may run into the other. */
-static FlRect part_of(const Finder *f, const Pair *pair, float reach_px)
+static bool add_contact(const Pair *pair, const FlContact *like, GError **error)
 {
-    const FlMaskStore *masks = f->plan->masks;
-    const FlRect page = pair->grid.sheet.page;
-    const int room = (int)ceilf(2 * reach_px / pair->scale) + 2;
-    const FlRect own =
-        fl_mask_store_box(masks, pair->own->region, fl_wet_shown_by(pair->own, f->frame));
-    const FlRect other =
-        fl_mask_store_box(masks, pair->other->region, fl_wet_shown_by(pair->other, f->frame));
-    if (own.width == 0 || other.width == 0)
-        return (FlRect){0, 0, 0, 0};
-    return fl_rect_and(fl_rect_grown(fl_wet_cells_of(&pair->grid, own), 2, page),
-                       fl_rect_grown(fl_wet_cells_of(&pair->grid, other), room, page));
-}
-
-static bool add_contact(const Finder *f, const Pair *pair, const FlContact *like, GError **error)
-{
-    const FlRect part = part_of(f, pair, like->reach_px);
+    const Finder *f = pair->f;
+    const FlRect part = part_of(pair, f->frame);
     if (part.width == 0)
         return true;
     f->contacts->contact = g_renew(FlContact, f->contacts->contact, f->contacts->n + 1);
@@ -344,18 +321,16 @@ static bool add_contact(const Finder *f, const Pair *pair, const FlContact *like
     contact->region = pair->own->region, contact->other = pair->other->region;
     contact->style = &pair->other->style->front;
     contact->first = pair->own->area_px < pair->other->area_px;
-    contact->box = fl_wet_px_of(&pair->grid, part);
-    contact->step = pair->grid.cell;
+    contact->box = fl_wet_px_of(&f->grid, part);
+    contact->step = f->grid.cell;
     contact->width = part.width, contact->height = part.height;
-    return find_planes(pair, f->frame, part, contact, error);
+    return find_planes(pair, part, contact, error);
 }
 
 /* Adds both contacts of a pair. */
 static bool add_pair(const Finder *f, const FlRegionPlan *a, const FlRegionPlan *b, GError **error)
 {
     const FlPlan *plan = f->plan;
-    const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
-    const int cell = MAX((int)(STEP_PX * plan->paper_px + .5f), 1);
     const int upper = place_of(f->cover->draws, a->region);
     const int lower = place_of(f->cover->draws, b->region);
     const FlRegionSettings *of_a = f->input->painted[a - plan->painted]->settings;
@@ -372,23 +347,10 @@ static bool add_pair(const Finder *f, const FlRegionPlan *a, const FlRegionPlan 
         .page = 1 / plan->paper_px,
         .reach_px = bleed * MIN(REACH_PX, OF_SIDE * side / plan->paper_px),
         .key = fl_key(fl_key(f->input->seed, g_str_hash(a->name)), g_str_hash(b->name))};
-    Pair pair = {
-        .plan = plan,
-        .cover = f->cover,
-        .frame = f->frame,
-        .own = a,
-        .other = b,
-        .grid = {.plan = plan,
-                 .cell = cell,
-                 .sheet.page = {0, 0, (width + cell - 1) / cell, (height + cell - 1) / cell}},
-        .over = upper > lower,
-        .scale = (float)cell / plan->paper_px};
-    if (like.reach_px < .5f)
-        return true;
-    if (!add_contact(f, &pair, &like, error))
-        return false;
-    pair.own = b, pair.other = a, pair.over = !pair.over;
-    return add_contact(f, &pair, &like, error);
+    const Pair pair = {f, a, b, upper > lower, like.reach_px};
+    const Pair back = {f, b, a, upper < lower, like.reach_px};
+    return like.reach_px < .5f ||
+           (add_contact(&pair, &like, error) && add_contact(&back, &like, error));
 }
 
 /* Returns: true if a region that has styles with keys was listed before. */
@@ -400,10 +362,20 @@ static bool is_later_style(const FlPlan *plan, int p)
 bool fl_contacts_find(FlContacts *contacts, const FlPlan *plan, const FlComposeInput *input,
                       const FlDrawList *draws, int frame, GError **error)
 {
+    const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
+    const int cell = MAX((int)(STEP_PX * plan->paper_px + .5f), 1);
     g_auto(FlCover) cover = {0};
-    const Finder finder = {plan, input, &cover, frame, contacts};
-    bool found = fl_cover_init(&cover, draws, fl_drawing_width(plan->drawing),
-                               fl_drawing_height(plan->drawing), (FlHiding){0}, error);
+    const Finder finder = {
+        .plan = plan,
+        .input = input,
+        .cover = &cover,
+        .frame = frame,
+        .grid = {.plan = plan,
+                 .cell = cell,
+                 .sheet.page = {0, 0, (width + cell - 1) / cell, (height + cell - 1) / cell}},
+        .scale = (float)cell / plan->paper_px,
+        .contacts = contacts};
+    bool found = fl_cover_init(&cover, draws, width, height, (FlHiding){0}, error);
     for (int p = 0; p < plan->n_painted && found; p++)
         for (int q = 0; q < p && found; q++)
             found = is_later_style(plan, p) || is_later_style(plan, q) ||
