@@ -12,6 +12,7 @@
 #define W 400
 #define H 300
 #define BARE -99.f // beyond all washes
+#define DISC "<circle id='c' fill='#5bb7d8' cx='200' cy='150' r='140'/>"
 #define BLOB                                                                                       \
     "<path fill='#5bb7d8' d='M-100 0 C-90 -90 70 -110 95 -20 C110 60 30 95 -20 90 C-80 85 -105 "   \
     "50 -100 0z'"
@@ -114,6 +115,28 @@ static Tones *lay_frame(const FlDrawing *drawing, int frame, const FlWashStyle *
     return lay_frame_of(drawing, frame, style, 0);
 }
 
+/* The tones of a drawing of one frame. */
+static Tones *lay_still(const char *shapes, const FlWashStyle *style, int uneven)
+{
+    const char *const frames[] = {shapes, NULL};
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
+    return lay_frame_of(drawing, 0, style, uneven);
+}
+
+/* The mean tone of the painted pixels in a ring around a place. */
+static double mean_in_ring(const Tones *tones, int x, int y, double from, double to)
+{
+    double n = 0, sum = 0;
+    for (int i = 0; i < W * H; i++) {
+        const double away = hypot(i % W - x, i / W - y);
+        if (tones->tone[i] > BARE && away >= from && away < to)
+            n++, sum += (double)tones->tone[i];
+    }
+    g_assert_cmpfloat(n, >, 0);
+    return sum / n;
+}
+
 static const FlWashStyle plain = FL_WASH_DEFAULTS;
 
 static int compare_floats(const void *a, const void *b)
@@ -137,10 +160,7 @@ static void spread_of(const Tones *tones, float spread[3])
 
 static void the_fill_stays_the_fill(void)
 {
-    const char *const frames[] = {BLOB " id='b' transform='translate(200 150)'/>", NULL};
-    g_autoptr(Scratch) folder = scratch_make();
-    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
-    g_autofree Tones *tones = lay_frame(drawing, 0, &plain);
+    g_autofree Tones *tones = lay_still(BLOB " id='b' transform='translate(200 150)'/>", &plain, 0);
     float spread[3];
     spread_of(tones, spread);
     g_test_message("ln of amounts from %.2f, median %.2f, to %.2f", spread[0], spread[1],
@@ -163,11 +183,8 @@ static void each_of_many_fills_stays(void)
     for (int k = 0; k < 8; k++)
         g_string_append_printf(page, "<circle id='c%d' fill='#%02x80c0' cx='%d' cy='%d' r='42'/>",
                                k, 30 * k, 50 + 100 * (k % 4), 75 + 150 * (k / 4));
-    const char *const frames[] = {page->str, NULL};
     const FlWashStyle even = {.wash = 1, .hue = 1};
-    g_autoptr(Scratch) folder = scratch_make();
-    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
-    g_autofree Tones *tones = lay_frame(drawing, 0, &even);
+    g_autofree Tones *tones = lay_still(page->str, &even, 0);
     double n[8] = {0}, tone[8] = {0}, play[8] = {0}, shadow[8] = {0};
     for (int i = 0; i < W * H; i++) {
         const int k = i % W / 100 + 4 * (i / W / 150);
@@ -187,22 +204,16 @@ static void each_of_many_fills_stays(void)
 /* A large and a small shape of one fill. */
 static void shapes_apart_stay_each(void)
 {
-    const char *const frames[] = {"<g fill='#5bb7d8'><circle id='a' cx='140' cy='120' r='110'/>"
-                                  "<circle id='b' cx='340' cy='240' r='40'/></g>",
-                                  NULL};
     const FlWashStyle even = {.wash = 1, .pool = 1};
-    g_autoptr(Scratch) folder = scratch_make();
-    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
-    g_autofree Tones *tones = lay_frame(drawing, 0, &even);
-    double n[2] = {0}, tone[2] = {0};
-    for (int i = 0; i < W * H; i++) {
-        const bool small = i % W > 280 && i / W > 180;
-        if (tones->tone[i] > BARE)
-            n[small]++, tone[small] += (double)tones->tone[i];
-    }
-    g_test_message("mean of ln %.3f, %.3f", tone[0] / n[0], tone[1] / n[1]);
-    g_assert_cmpfloat(fabs(tone[0] / n[0]), <, .02);
-    g_assert_cmpfloat(fabs(tone[1] / n[1]), <, .02);
+    g_autofree Tones *tones =
+        lay_still("<g fill='#5bb7d8'><circle id='a' cx='140' cy='120' r='110'/>"
+                  "<circle id='b' cx='340' cy='240' r='40'/></g>",
+                  &even, 0);
+    const double large = mean_in_ring(tones, 140, 120, 0, 112);
+    const double small = mean_in_ring(tones, 340, 240, 0, 42);
+    g_test_message("mean of ln %.3f, %.3f", large, small);
+    g_assert_cmpfloat(fabs(large), <, .02);
+    g_assert_cmpfloat(fabs(small), <, .02);
 }
 
 static double correlation(const float *a, const float *b, int n)
@@ -367,13 +378,10 @@ static void parts_that_move_apart_are_mixed(void)
 
 static void dots_and_lines_have_none(void)
 {
-    const char *const frames[] = {
-        "<circle id='dot' fill='#5bb7d8' cx='60' cy='60' r='7'/>"
-        "<rect id='line' fill='#5bb7d8' x='20' y='200' width='350' height='6'/>",
-        NULL};
-    g_autoptr(Scratch) folder = scratch_make();
-    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
-    g_autofree Tones *tones = lay_frame(drawing, 0, &plain);
+    g_autofree Tones *tones =
+        lay_still("<circle id='dot' fill='#5bb7d8' cx='60' cy='60' r='7'/>"
+                  "<rect id='line' fill='#5bb7d8' x='20' y='200' width='350' height='6'/>",
+                  &plain, 0);
     float spread[3];
     spread_of(tones, spread);
     g_assert_cmpfloat(spread[2] - spread[0], <, .02f);
@@ -382,12 +390,8 @@ static void dots_and_lines_have_none(void)
 /* Where calm is, the step between lines goes; elsewhere it stays, and at the rim everywhere. */
 static void a_calm_wash_keeps_rims_and_some_marks(void)
 {
-    const char *const frames[] = {"<circle id='c' fill='#5bb7d8' cx='200' cy='150' r='140'/>",
-                                  NULL};
     const FlWashStyle calm = {.wash = 1, .calm = 1};
-    g_autoptr(Scratch) folder = scratch_make();
-    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
-    g_autofree Tones *tones = lay_frame_of(drawing, 0, &calm, 200);
+    g_autofree Tones *tones = lay_still(DISC, &calm, 200);
     int middle = 0, lost = 0, found = 0, rim = 0;
     for (int y = 11; y < H - 11; y++)
         for (int x = 60; x < W - 60; x++) {
@@ -408,23 +412,13 @@ static void a_calm_wash_keeps_rims_and_some_marks(void)
 
 static void a_heart_is_light(void)
 {
-    const char *const frames[] = {"<circle id='c' fill='#5bb7d8' cx='200' cy='150' r='140'/>",
-                                  NULL};
     const FlWashStyle style = {.wash = 1, .heart = 1};
-    g_autoptr(Scratch) folder = scratch_make();
-    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
-    g_autofree Tones *tones = lay_frame(drawing, 0, &style);
-    double n[2] = {0}, tone[2] = {0};
-    for (int i = 0; i < W * H; i++) {
-        const double depth = 140 - hypot(i % W - 200, i / W - 150);
-        const bool middle = depth > 80;
-        if (middle || (depth > 5 && depth < 30))
-            n[middle]++, tone[middle] += (double)tones->tone[i];
-    }
-    g_test_message("mean of ln near the rim %.3f, in the middle %.3f", tone[0] / n[0],
-                   tone[1] / n[1]);
-    g_assert_cmpfloat(tone[0] / n[0], >, .1);
-    g_assert_cmpfloat(tone[1] / n[1], <, -.1);
+    g_autofree Tones *tones = lay_still(DISC, &style, 0);
+    const double rim = mean_in_ring(tones, 200, 150, 110, 135);
+    const double middle = mean_in_ring(tones, 200, 150, 0, 60);
+    g_test_message("mean of ln near the rim %.3f, in the middle %.3f", rim, middle);
+    g_assert_cmpfloat(rim, >, .1);
+    g_assert_cmpfloat(middle, <, -.1);
 }
 
 static void threads_and_parts_do_not_matter(void)
