@@ -106,6 +106,10 @@ def draw_layers():
         point.vertex_color = (0.8, 0, 0, 0.5)
     front.use_mask_layer = True
     front.mask_layers.add(mask)
+    hidden = pencil.layers.new('Hidden')
+    hidden.hide = True
+    front.mask_layers.add(hidden)
+    back.location, back.rotation = (0.1, 0, 0.1), (0, 0.1, 0)
     scene = bpy.context.scene
     scene.frame_end = 1
     scene.render.resolution_x, scene.render.resolution_y = 480, 270

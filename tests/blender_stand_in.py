@@ -75,13 +75,17 @@ def old_stroke(index, points, radii, fill_color=(0, 0, 0, 0)):
                  line_width=2000, start_cap_mode='ROUND')
 
 
-def layer(name, strokes, new, masks=()):
-    own = dict(hide=False, opacity=0.5, tint_color=(0, 0, 0), tint_factor=0, blend_mode='MULTIPLY', use_lights=False,
+ARM = Matrix(2) @ Matrix(1, (1, 0, 0))  # of a bone, in the world
+PARENT = Thing(matrix_world=Matrix(2), pose=Thing(bones={'arm': Thing(matrix=Matrix(1, (1, 0, 0)))}))
+
+
+def layer(name, strokes, new, masks=(), hide=False):
+    own = dict(hide=hide, opacity=0.5, tint_color=(0, 0, 0), tint_factor=0, blend_mode='MULTIPLY', use_lights=False,
                mask_layers=[Thing(name=m, invert=True, hide=False) for m in masks])
     if new:
         return Thing(name=name, current_frame=lambda: Thing(drawing=Thing(strokes=strokes)), matrix_local=Matrix(),
-                     parent=None, use_masks=bool(masks), radius_offset=0, **own)
-    return Thing(info=name, active_frame=Thing(strokes=strokes), matrix_layer=Matrix(), line_change=0,
+                     parent=PARENT, parent_bone='arm', matrix_parent_inverse=ARM.inverted(), use_masks=bool(masks), radius_offset=0, **own)
+    return Thing(info=name, active_frame=Thing(strokes=strokes), line_change=0,
                  use_mask_layer=bool(masks), **own)
 
 
@@ -89,7 +93,9 @@ def drawn(new):
     stroke = new_stroke if new else old_stroke
     small = [(x / 4, y, z / 4) for x, y, z in SQUARE]
     layers = [layer('Back', [stroke(0, SQUARE, [1] * 4, fill_color=(0, 1, 0, 1)), stroke(2, small, [1] * 4)], new),
-              layer('Lines', [stroke(1, SQUARE, [0.1] * 4), stroke(1, SQUARE, [0.1, 0.1, 0.3, 0.1])], new, ['Back'])]
+              layer('Lines', [stroke(1, SQUARE, [0.1] * 4), stroke(1, SQUARE, [0.1, 0.1, 0.3, 0.1])], new,
+                    ['Back', 'Hidden', 'Lines']),
+              layer('Hidden', [stroke(0, SQUARE, [1] * 4)], new, hide=True)]
     data = Thing(layers=layers, pixel_factor=1, stroke_thickness_space='WORLDSPACE')
     figure = Thing(type='GREASEPENCIL' if new else 'GPENCIL', name='a figure', data=data, material_slots=MATERIALS,
                    shader_effects=[], hide_render=False, matrix_world=Matrix())
@@ -114,4 +120,5 @@ for part in ('fill="#00ff00"',  # a fill has the vertex colour
              'id="a_figure-Lines-1-line"', 'mix-blend-mode:multiply', 'opacity="0.500"',
              'evenodd" d="M0 0H100V100H0zM30.00 70.00L'):  # an inverted mask
     assert part in first, (part, first)
+assert first.count('<clipPath') == 3, first  # a hidden layer masks no other, nor does a layer itself
 print('both are drawn alike')

@@ -38,7 +38,7 @@ LINE_M = 0.001  # world size of a line's thickness of one
 
 Point = namedtuple('Point', 'co radius opacity mix')  # radius in metres, or px if negative; mix: RGBA, A its share
 Stroke = namedtuple('Stroke', 'points closed material mix fill_opacity uv flat')
-Layer = namedtuple('Layer', 'name matrix opacity tint blend masks lights strokes')  # masks: (name, inverted)
+Layer = namedtuple('Layer', 'name matrix opacity tint blend masks lights strokes')  # matrix: or None; masks: (name, inverted)
 
 
 def material_of(thing, index):
@@ -61,7 +61,8 @@ def old_layers(thing):
             strokes.append(Stroke(points, stroke.use_cyclic, material_of(thing, stroke.material_index),
                                   stroke.vertex_color_fill, 1, [tuple(p.uv_fill) for p in stroke.points],
                                   stroke.start_cap_mode == 'FLAT'))
-        yield layer.hide, Layer(layer.info, layer.matrix_layer.copy(), layer.opacity,
+        # the points of an evaluated object have the transform of their layer and of its parent
+        yield layer.hide, Layer(layer.info, None, layer.opacity,
                                 (*layer.tint_color, layer.tint_factor), layer.blend_mode,
                                 masks_of(layer, layer.use_mask_layer), layer.use_lights, strokes)
 
@@ -71,7 +72,9 @@ def new_layers(thing):
         frame = layer.current_frame()
         matrix = layer.matrix_local
         if layer.parent:
-            matrix = thing.matrix_world.inverted() @ layer.parent.matrix_world @ layer.matrix_parent_inverse @ matrix
+            bone = layer.parent.pose and layer.parent.pose.bones.get(layer.parent_bone)
+            parent = layer.parent.matrix_world @ bone.matrix if bone else layer.parent.matrix_world
+            matrix = thing.matrix_world.inverted() @ parent @ layer.matrix_parent_inverse @ matrix
         strokes = []
         for stroke in frame.drawing.strokes if frame else []:
             points = [Point(p.position, max(p.radius + layer.radius_offset, 0), p.opacity, p.vertex_color)
@@ -213,6 +216,8 @@ class Shape:
         self.fill = self.line = self.data = ''
         material, placed = stroke.material, [page.place(matrix @ point.co) for point in stroke.points]
         self.seen = bool(material and placed and None not in placed)
+        if None in placed and any(placed):
+            page.lost.add('strokes that reach behind the camera: none')
         if not self.seen:
             return
         flat = [at[:2] for at in placed]
@@ -269,8 +274,9 @@ BLENDS = {'MULTIPLY': 'multiply', 'HARDLIGHT': 'hard-light'}
 def object_svg(page, thing, matrix):
     """The group of an object: its layers in their order."""
     layers = list(LAYERS[thing.type](thing))
-    shapes = {layer.name: [Shape(page, matrix @ layer.matrix, layer, stroke) for stroke in layer.strokes]
-              for _, layer in layers}
+    shapes = {layer.name: [Shape(page, matrix @ layer.matrix if layer.matrix else matrix, layer, stroke)
+                           for stroke in layer.strokes] for _, layer in layers}
+    visible = {layer.name for hidden, layer in layers if not hidden}
     below = []  # finished layers
     if getattr(thing, 'shader_effects', None) and any(effect.show_viewport for effect in thing.shader_effects):
         page.lost.add('effects of objects: none')
@@ -293,11 +299,12 @@ def object_svg(page, thing, matrix):
             page.lost.add('lights: the colours of materials')
         marks = [f'<g inkscape:groupmode="layer" inkscape:label={quoteattr(layer.name)} '
                  f'opacity="{layer.opacity:.3f}"{style}>', *marks, '</g>']
-        kept = [data for name, inverted in layer.masks if not inverted
-                for shape in shapes.get(name, []) if shape.seen for data in shape.area()]
-        clips = [page.clip(kept, False)] if any(not inverted for _, inverted in layer.masks) else []
-        clips += [page.clip([data], True) for name, inverted in layer.masks if inverted
-                  for shape in shapes.get(name, []) if shape.seen for data in shape.area()]
+        masks = [(name, inverted) for name, inverted in layer.masks if name in visible - {layer.name}]
+        kept = [data for name, inverted in masks if not inverted
+                for shape in shapes[name] if shape.seen for data in shape.area()]
+        clips = [page.clip(kept, False)] if any(not inverted for _, inverted in masks) else []
+        clips += [page.clip([data], True) for name, inverted in masks if inverted
+                  for shape in shapes[name] if shape.seen for data in shape.area()]
         for clip in clips:
             marks = [f'<g {clip}>', *marks, '</g>']
         below += marks
