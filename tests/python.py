@@ -66,6 +66,11 @@ film.set("tint", None, region=film.regions[0].name)
 layers = film.layers(2)
 tell("each region has a layer", len(layers) == 2 and all(0 < layer[..., 3].mean() < 128 for layer in layers.values()))
 tell("and then all are there again", (film[2] == frames[2]).all())
+film["region"] = film.regions[1].name
+tell("or the region that was chosen before", len(film.layers(2)) == 1 and (film[2] != frames[2]).any())
+film["region"] = None
+film["loop"] = False
+tell("False is off", raises(fluidy.UsageError, "“off”", lambda: film.set("tint", False)))
 tell("a draft is small", max(film.draft(1, 20).shape[:2]) <= 20 and film.drawing(1).shape[2] == 4 and film.map(1).any())
 png = frames[0]._repr_png_()
 size, data = struct.unpack(">II", png[16:24]), zlib.decompress(png[41:-16])
@@ -106,7 +111,7 @@ tell("files are written", os.path.getsize("out_5.png") > 100)
 masks = numpy.zeros((3, 40, 50), numpy.uint8)
 for k in range(3):
     masks[k, 10:30, 8 + 3 * k:28 + 3 * k] = 255
-cut = fluidy.paint(masks, style)
+cut = fluidy.paint(masks, style, tint=None)
 tell("masks are painted", len(cut) == 3 and (cut[1][..., 3] > 128).sum() > 300 and cut[1][0, 0, 3] == 0)
 flow = numpy.zeros((3, 40, 50, 2), numpy.float32)
 flow[..., 0] = 3

@@ -73,8 +73,8 @@ def _name(option: str) -> str:
 
 
 def _value(value: Any) -> Optional[str]:
-    """The value as on the command line; None and False: the default."""
-    return None if value is None or value is False else "on" if value is True else str(value)
+    """The value as on the command line; None: the default."""
+    return None if value is None else ("off", "on")[value] if isinstance(value, bool) else str(value)
 
 
 class Film:
@@ -102,7 +102,7 @@ class Film:
             "void(char *, void *)", lambda message, data: warnings.warn(text(message), stacklevel=4),
             onerror=self._keep)
         library.fl_film_set_calls(self._film, self._calls)
-        self._background: Any = None  # as it was set
+        self._options: Dict[str, Any] = {}  # of all regions, as they were set
         if config is not None:
             self._ask(library.fl_film_set_config, chars(config), ffi.NULL)
         for option, value in options.items():
@@ -133,9 +133,10 @@ class Film:
 
     def set(self, option: str, value: Any, region: Optional[str] = None) -> None:
         """Sets an option of all regions, or of one; None: the default again."""
-        self._ask(library.fl_film_set, chars(region), chars(_name(option)), chars(_value(value)))
-        if option == "background" and region is None:
-            self._background = value
+        with self._lock:
+            self._ask(library.fl_film_set, chars(region), chars(_name(option)), chars(_value(value)))
+            if region is None:
+                self._options[option] = value
 
     def __setitem__(self, option: str, value: Any) -> None:
         self.set(option, value)
@@ -169,7 +170,7 @@ class Film:
         """Each painted region alone, on a transparent page, by its name."""
         layers = {}
         with self._lock:
-            background = self._background
+            before = {option: self._options.get(option) for option in ("region", "background")}
             try:
                 self.set("background", "none")
                 for region in self.regions:
@@ -177,12 +178,13 @@ class Film:
                         self.set("region", region.name)
                         layers[region.name] = self[frame]
             finally:
-                self.set("region", None)
-                self.set("background", background)
+                for option, value in before.items():
+                    self.set(option, value)
         return layers
 
     def _info(self) -> Any:
-        return self._ask(library.fl_film_info)
+        with self._lock:
+            return ffi.new("FlFilmInfo *", self._ask(library.fl_film_info)[0])
 
     def __len__(self) -> int:
         return self._info().n_frames
@@ -212,7 +214,8 @@ class Film:
     @property
     def n_painted(self) -> int:
         """How many pictures of regions were painted so far."""
-        return library.fl_film_stats(self._film).n_painted
+        with self._lock:
+            return library.fl_film_stats(self._film).n_painted
 
     def render(self) -> None:
         """Writes the film to files, as fluidy-svg does, by the options "output", "layers", …"""
@@ -250,7 +253,8 @@ def paint(masks: numpy.ndarray, style: str, *, flow: Optional[numpy.ndarray] = N
         taken.append(_array(painted.layer, height, width, 4))
         return True
 
-    words = [(ffi.NULL, chars(_name(key)), chars(_value(value))) for key, value in {"style": style, **settings}.items()]
+    words = [(ffi.NULL, chars(_name(key)), chars(_value(value)))
+             for key, value in {"style": style, **settings}.items() if value is not None]
     listed = ffi.new("FlSetting[]", words)
     mask_call = ffi.callback("bool(void *, int, uint8_t *)", fill(masks))
     flow_call = ffi.NULL if flow is None else ffi.callback("bool(void *, int, float *)", fill(flow))
