@@ -81,7 +81,7 @@ static void on_made(GObject *process, GAsyncResult *result, void *data)
     g_autofree char *said = NULL;
     const bool ended =
         g_subprocess_communicate_utf8_finish(making->process, result, NULL, &said, &error);
-    if (ended && !g_subprocess_get_successful(making->process))
+    if (ended && !(making->drop && g_subprocess_get_successful(making->process)))
         g_set_error(&error, FL_ERROR, FL_ERROR_INPUT, "%s", *said ? g_strstrip(said) : "stopped");
     if (making->drop)
         making->drop->making = NULL;
