@@ -161,6 +161,7 @@ static void a_mistake_in_style_ini_is_told_with_its_line(void)
         {"[region]\nengine = oil\n", "style.ini:2: engine: “oil”"},
         {"[region]\nenigne = patch\n", "style.ini:2: unknown key “enigne”; did you mean"},
         {"[region]\nstyle = ink\n", "style.ini:2: style: a style does not say that"},
+        {"[region]\nmerge-with = sky\n", "style.ini:2: merge-with: a style does not say that"},
         {"[frnt]\n", "style.ini:1: [frnt]: expected [front]"},
         {"fps = 3\n", "style.ini:1: “fps” stands above the first section"},
     };

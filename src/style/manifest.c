@@ -51,7 +51,8 @@ const FlKeyTable fl_wash_table = {wash_keys, G_N_ELEMENTS(wash_keys)};
 /* A setting of regions that have this style. */
 static bool take_setting(void *settings, const char *name, const char *value, GError **error)
 {
-    static const char *const others[] = {"style", "tile", "fluid", NULL};
+    static const char *const others[] = {"style",       "tile",       "fluid",
+                                         "passthrough", "merge-with", NULL};
     g_autoptr(GError) reason = NULL;
     if (g_strv_contains(others, name))
         return fl_fail(error, FL_ERROR_STYLE, "%s: a style does not say that of its regions", name);
