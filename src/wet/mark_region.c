@@ -295,7 +295,7 @@ bool fl_wet_mark_one(void *data, int m, int thread, GError **error)
     if (now != step->frame) // its last picture is shown again, and wets what it wetted
         return true;
     const bool still =
-        fl_mask_store_same(wet->plan->masks, plan->region, before, now) && !step->pans;
+        fl_mask_store_same(wet->plan->masks, plan->region, before, now) && !step->moved;
     if (still && marker->rests)
         return true;
     return mark_moving(step, marker, before, now, !still, error);

@@ -163,7 +163,7 @@ static bool move_sheet(FlWet *wet, const FlAffine *came, GError **error)
 {
     FlAffine from = *came;
     bool moved;
-    if (came->xx == 1 && came->yy == 1 && came->xy == 0 && came->yx == 0) {
+    if (fl_wet_only_pans(came)) {
         wet->camera_x -= (float)came->x0, wet->camera_y -= (float)came->y0;
         const float dx = floorf(wet->camera_x + 0.5f), dy = floorf(wet->camera_y + 0.5f);
         wet->camera_x -= dx, wet->camera_y -= dy;
@@ -184,9 +184,7 @@ static bool do_step(FlWet *wet, int before, int frame, GError **error)
         !fl_wet_follow_camera(wet, before, frame, &step.came, error) ||
         !move_sheet(wet, &step.came, error))
         return false;
-    const FlAffine *came = &step.came;
-    step.pans = came->xx != 1 || came->xy != 0 || came->yx != 0 || came->yy != 1 || came->x0 != 0 ||
-                came->y0 != 0;
+    step.moved = !fl_wet_only_pans(&step.came) || step.came.x0 != 0 || step.came.y0 != 0;
     fl_wet_sheet_dry(&wet->sheet, step.frames);
     return mark_all(&step, error);
 }

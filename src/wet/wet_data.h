@@ -51,7 +51,7 @@ typedef struct FlWetStep {
     FlWet *wet;
     int frame;
     float frames;  // since the step before
-    bool pans;     // the paper moves
+    bool moved;    // the paper has moved
     FlAffine came; // the place of the paper below a cell in the frame before
 } FlWetStep;
 

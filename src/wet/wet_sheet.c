@@ -70,12 +70,6 @@ static const FlPaperGrains *grain_row(const FlWetSheet *sheet, int y)
     return sheet->grain + (size_t)row * (size_t)sheet->width;
 }
 
-/** The camera has only panned. */
-static bool is_upright(const FlAffine *place)
-{
-    return place->xx == 1 && place->yy == 1 && place->xy == 0 && place->yx == 0;
-}
-
 /** The grain at a px of the cells of a sheet that has turned. */
 static FlPaperGrains grain_at(const FlWetSheet *sheet, int x, int y)
 {
@@ -91,8 +85,8 @@ FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t at)
 {
     const int c = sheet->cell_px;
     const int x = c * (at % sheet->page.width) + c / 2, y = c * (at / sheet->page.width) + c / 2;
-    return is_upright(&sheet->fibres.place) ? grain_row(sheet, y)[grain_column(sheet, x)]
-                                            : grain_at(sheet, x, y);
+    return fl_wet_only_pans(&sheet->fibres.place) ? grain_row(sheet, y)[grain_column(sheet, x)]
+                                                  : grain_at(sheet, x, y);
 }
 
 void fl_wet_sheet_restore(FlWetSheet *sheet, FlRect wet, const FlWetCell *cells, FlAffine place)
@@ -389,7 +383,7 @@ static void read_grain(const FlWetSheet *sheet, int x, int y, FlColumns columns,
                        const LayerRows *rows)
 {
     const FlPaperGrains *grain = grain_row(sheet, y);
-    const bool turned = !is_upright(&sheet->fibres.place);
+    const bool turned = !fl_wet_only_pans(&sheet->fibres.place);
     int column = grain_column(sheet, sheet->cell_px * columns.first + x);
     for (int i = columns.first; i < columns.last && turned; i++) {
         const FlPaperGrains own = grain_at(sheet, sheet->cell_px * i + x, y);
