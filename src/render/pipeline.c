@@ -305,13 +305,15 @@ bool fl_render(const FlRenderOptions *options, GError **error)
 
 bool fl_render_frames(const FlRenderOptions *options, FlTakeFrame take, void *taker, GError **error)
 {
-    FlRenderOptions without_files = *options;
+    FlRenderOptions without_files;
+    if (!fl_options_take(options, &without_files, error))
+        return false;
     without_files.output = NULL, without_files.format = "null";
     without_files.overwrite = FL_OVERWRITE_YES, without_files.resume = false;
     without_files.cache = NULL; // frames are given once, so a failed render cannot be retried
     without_files.layers = without_files.report = without_files.stats = NULL;
     without_files.dump = without_files.provenance = NULL;
-    if (!options->merge)
+    if (!without_files.merge)
         without_files.paint = without_files.ebsynth = NULL;
     return render(&without_files, (FlFrameTaker){take, taker}, error);
 }
