@@ -157,6 +157,23 @@ static void what_rests_has_an_anchor_that_rests(void)
     g_assert_cmpfloat(fl_drawing_anchor(drawing, 0, 0).x, ==, first.x / 2);
 }
 
+/* One more at the front of the document shifts the places in it of all that move. */
+static void many_shapes_are_followed_where_one_comes_in(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < 3; t++) {
+        GString *shapes = g_string_new(t == 2 ? "<path fill=\"red\" d=\"M90,90h1v1z\"/>" : "");
+        for (int i = 0; i < 510; i++)
+            g_string_append_printf(shapes, "<path fill=\"red\" d=\"M%g,%gh3v3h-3z\"/>",
+                                   i % 24 * 4 + .4 * t, i / 24 * 4 + .3 * t);
+        add_frame(folder, t, shapes->str);
+        g_string_free(shapes, TRUE);
+    }
+    g_autoptr(FlDrawing) drawing = open_film(folder);
+    for (int t = 1; t < 3; t++)
+        assert_moves(drawing, t, .4, .3);
+}
+
 /* A long shape has the axis that it has when it is first seen; a round one has none. */
 static void a_long_shape_has_an_axis(void)
 {
@@ -187,6 +204,8 @@ int main(int argc, char **argv)
     TEST("other-nodes-are-no-turn", other_nodes_are_no_turn);
     TEST("a-leaf-that-goes-takes-nothing-along", a_leaf_that_goes_takes_nothing_along);
     TEST("a-shape-that-is-built-holds-its-anchor", a_shape_that_is_built_holds_its_anchor);
+    TEST("many-shapes-are-followed-where-one-comes-in",
+         many_shapes_are_followed_where_one_comes_in);
     TEST("a-long-shape-has-an-axis", a_long_shape_has_an_axis);
     TEST("what-rests-has-an-anchor-that-rests", what_rests_has_an_anchor_that_rests);
 #undef TEST

@@ -17,7 +17,6 @@
 #define SLIGHT 4.0f   // for a flat one with none of these: its colour jitters
 #define OVERLAP 0.6f  // of boxes at the same place in the picture, intersection over union
 #define STAYS 0.9f    // of boxes of a leaf that need not be compared with others
-#define MANY 500      // unpaired leaves from which on paint and place in the document suffice
 #define TOO_MANY 4000 // unpaired leaves on a side; beyond that only exact matches are followed
 
 typedef struct Pair {
@@ -111,9 +110,8 @@ static gboolean exact_equal(gconstpointer p, gconstpointer q)
            a->thick == b->thick && a->labels == b->labels && a->part == b->part;
 }
 
-/** Continues tracks by leaves that kept paint and place in the document, and whose box overlaps as
- * much as that. */
-static void pair_exactly(Follow *f, int t, float least, int *row)
+/** Continues tracks by leaves that kept paint and place in the document, and hardly moved. */
+static void pair_exactly(Follow *f, int t, int *row)
 {
     g_autoptr(GHashTable) known = g_hash_table_new(exact_hash, exact_equal);
     for (guint k = 0; k < f->tracks->len; k++)
@@ -127,7 +125,7 @@ static void pair_exactly(Follow *f, int t, float least, int *row)
     for (guint i = 0; i < parts->len; i++) {
         const FlTrack *track = found[i] ? &g_array_index(f->tracks, FlTrack, found[i] - 1) : NULL;
         const float *box = g_array_index(parts, FlSurveyPart, i).box;
-        if (row[i] < 0 && track && track->last_frame < t && overlap(track->last.box, box) >= least)
+        if (row[i] < 0 && track && track->last_frame < t && overlap(track->last.box, box) >= STAYS)
             follow_on(f, t, (int)i, found[i] - 1, row);
     }
 }
@@ -140,15 +138,13 @@ static int count_unpaired(const int *row, guint n)
     return left;
 }
 
-/** Pairs the remaining leaves, the most alike first. */
-static void pair_by_likeness(Follow *f, int t, int *row)
+/** Pairs those of the remaining leaves that are as alike as `least` or more, the most alike first.
+ */
+static void pair_alike(Follow *f, int t, float least, int *row)
 {
     GArray *parts = f->survey->frame[t].parts;
     g_autoptr(GArray) pairs = g_array_new(FALSE, FALSE, sizeof(Pair));
-    if (count_unpaired(row, parts->len) >= MANY)
-        pair_exactly(f, t, 0, row);
-    const int left = count_unpaired(row, parts->len);
-    for (guint k = 0; k < f->tracks->len && left > 0 && left < TOO_MANY; k++) {
+    for (guint k = 0; k < f->tracks->len; k++) {
         const FlTrack *track = &g_array_index(f->tracks, FlTrack, k);
         for (guint i = 0; i < parts->len && track->last_frame < t; i++) {
             const FlSurveyPart *s = &g_array_index(parts, FlSurveyPart, i);
@@ -156,7 +152,7 @@ static void pair_by_likeness(Follow *f, int t, int *row)
                 continue;
             const float like = likeness(&track->last, s);
             const Pair pair = {like - (track->last_frame < t - 1 ? 0.5f : 0), (int)k, (int)i};
-            if (like >= 0)
+            if (like >= 0 && pair.score >= least)
                 g_array_append_val(pairs, pair);
         }
     }
@@ -175,6 +171,8 @@ static void track_clear(void *data)
 
 GArray *fl_leaf_tracks_find(const FlSurvey *survey, const int *label_of, int ***track_of)
 {
+    // Once leaves of the same paint at the same place in the document are paired, few are left.
+    static const float alike[] = {7, 6, -1};
     Follow f = {survey, label_of, g_array_new(FALSE, FALSE, sizeof(FlTrack))};
     g_array_set_clear_func(f.tracks, track_clear);
     *track_of = g_new0(int *, survey->n_frames);
@@ -183,8 +181,12 @@ GArray *fl_leaf_tracks_find(const FlSurvey *survey, const int *label_of, int ***
         int *row = (*track_of)[t] = g_new(int, n + 1);
         for (guint i = 0; i < n; i++)
             row[i] = -1;
-        pair_exactly(&f, t, STAYS, row);
-        pair_by_likeness(&f, t, row);
+        pair_exactly(&f, t, row);
+        for (int k = 0; k < (int)G_N_ELEMENTS(alike); k++) {
+            const int left = count_unpaired(row, n);
+            if (left > 0 && left < TOO_MANY)
+                pair_alike(&f, t, alike[k], row);
+        }
         for (guint i = 0; i < n; i++)
             if (row[i] < 0)
                 new_track(&f, t, (int)i, row);
