@@ -39,8 +39,9 @@ result $? 'the script takes what the dialog of Inkscape asks for'
 sed -n 's/^name = //p' "$fixtures"/styles/*/style.ini | tr 'A-Z ' 'a-z-' >named
 sed -n '/name="style"/,/"other"/s/.*<option value="\([^"]*\)".*/\1/p' "$plugins/inkscape/fluidy_paint.inx" | grep -vx other |
     diff named - >err && sed -n '/^STYLES/,/]/p' "$plugins/blender/fluidy_svg.py" | grep -o "'[^']*'" | tr -d "'" |
+    diff named - >>err && sed -n '/^STYLES/,/]/p' "$plugins/krita/fluidy_paint/__init__.py" | grep -o "'[^']*'" | tr -d "'" |
     diff named - >>err
-result $? 'the dialogs of Inkscape and Blender offer the bundled styles'
+result $? 'the dialogs of Inkscape, Blender and Krita offer the bundled styles'
 extension --style=ink --frames=drawing film.svg && cp out once.svg && [ "$(images once.svg)" = 1 ] &&
     grep -q '<!-- kept -->' once.svg && grep -q '<image x="0" y="0" width="64" height="48"' once.svg &&
     extension --style=gouache --frames=drawing once.svg && [ "$(images out)" = 1 ] && grep -q 'painted: gouache' out
