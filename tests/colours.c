@@ -48,11 +48,12 @@ static int first_like(const FlDrawList *draws, int r)
  * opaque and painted. */
 static uint16_t *find_tops(const FlPlan *plan, const FlDrawList *draws)
 {
-    const size_t width = (size_t)fl_drawing_width(plan->drawing);
-    uint16_t *top = g_new0(uint16_t, width * (size_t)fl_drawing_height(plan->drawing));
+    const FlShapes *shapes = &plan->shapes;
+    const size_t width = (size_t)fl_drawing_width(shapes->drawing);
+    uint16_t *top = g_new0(uint16_t, width * (size_t)fl_drawing_height(shapes->drawing));
     for (int r = 0; r < draws->n; r++) {
         const FlDraw *draw = &draws->draw[r];
-        const bool plain = plan->painted_of[draw->region] >= 0 && !draw->picture &&
+        const bool plain = shapes->painted_of[draw->region] >= 0 && !draw->picture &&
                            draw->alpha == 255 && draw->blend_mode == FL_BLEND_MODE_OVER;
         const int first = first_like(draws, r);
         const FlRect box = draw->area.box;
@@ -166,16 +167,17 @@ static Look look_at(const FlPicture *picture, const uint16_t *top, uint16_t draw
 
 static void judge_frame(const FlPlan *plan, int frame, const FlPicture *picture, Tally *tally)
 {
+    const FlShapes *shapes = &plan->shapes;
     GError *error = NULL;
     const double bound = bound_of(tally);
-    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, &error);
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(shapes->drawing, frame, &error);
     stop_on(error);
     g_autofree uint16_t *top = find_tops(plan, draws);
     for (int r = 0; r < draws->n; r++) {
         uint8_t median[3];
-        if (plan->painted_of[draws->draw[r].region] < 0 || first_like(draws, r) < r)
+        if (shapes->painted_of[draws->draw[r].region] < 0 || first_like(draws, r) < r)
             continue;
-        const FlRegionPlan *painted = &plan->painted[plan->painted_of[draws->draw[r].region]];
+        const FlRegionPlan *painted = &shapes->painted[shapes->painted_of[draws->draw[r].region]];
         const Look look =
             look_at(picture, top, (uint16_t)(r + 1), plan->paper, painted->style->border_px);
         if (look.total < (tally->washed ? LARGE : ENOUGH))
@@ -187,8 +189,8 @@ static void judge_frame(const FlPlan *plan, int frame, const FlPicture *picture,
         tally->fills++, tally->within += d <= bound, tally->worst = MAX(tally->worst, d);
         if (d > bound)
             printf("  frame %d, %s: #%02x%02x%02x for #%02x%02x%02x, %.1f, %d pixels\n",
-                   fl_drawing_number(plan->drawing, frame),
-                   fl_drawing_region(plan->drawing, draws->draw[r].region)->name, median[0],
+                   fl_drawing_number(shapes->drawing, frame),
+                   fl_drawing_region(shapes->drawing, draws->draw[r].region)->name, median[0],
                    median[1], median[2], fill[0], fill[1], fill[2], d, look.total);
         if (look.contrast.n >= LARGE)
             tally->large++, tally->shares += deviation(&look.contrast) / tally->of_style;
@@ -227,9 +229,9 @@ static void judge(const char *folder, const char *style, Tally *all)
     g_autoptr(FlPlan) plan = fl_plan_new(&again, &error);
     stop_on(error);
     Tally tally = {.of_style = all->of_style, .washed = all->washed};
-    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++) {
+    for (int f = 0; f < plan->shapes.n_frames; f++) {
         g_autofree char *file =
-            g_strdup_printf("%s/%d.png", scratch, fl_drawing_number(plan->drawing, f));
+            g_strdup_printf("%s/%d.png", scratch, fl_drawing_number(plan->shapes.drawing, f));
         g_autoptr(FlPicture) picture = fl_picture_read_png(file, &error);
         stop_on(error);
         judge_frame(plan, f, picture, &tally);

@@ -116,8 +116,8 @@ static Score score_of_style(const char *folder)
     float factor = 1;
     g_autoptr(FlParams) params = fl_params_new();
     const FlGuideParams how = fl_guide_params(params);
-    const FlRenderOptions options = {0};
-    g_autoptr(FlStyle) whole = fl_style_load_for(folder, 0, 1, 0, &options, &factor, &error);
+    g_autoptr(FlStyle) whole =
+        fl_style_load_for(folder, 0, 1, 0, true, (FlCaller){0}, &factor, &error);
     const FlStyleUse use = {.start = 1, .step = 1, .scale = factor};
     g_autoptr(FlStyle) style = whole ? fl_style_adapt(whole, &use, &error) : NULL;
     g_autoptr(FlExemplar) exemplar = style ? fl_exemplar_new(style, params, &error) : NULL;

@@ -145,10 +145,10 @@ static void leave(const FlRenderOptions *options, bool finished)
     if (plan->finished == FL_FINISHED_ALL)
         return;
     g_assert_true(fl_resume_init(&resume, plan, &error));
-    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++) {
+    for (int f = 0; f < fl_drawing_frames(plan->shapes.drawing); f++) {
         g_autoptr(GPtrArray) files = fl_frame_files(plan, f, NULL);
         g_assert_true(fl_resume_before_files(&resume, plan, f, &error));
-        const int number = fl_drawing_number(plan->drawing, f);
+        const int number = fl_drawing_number(plan->shapes.drawing, f);
         write_frame(files->pdata[0], fl_mark_of_frame(resume.made_from, number));
         g_assert_true(fl_resume_save(&resume, &error));
     }

@@ -28,14 +28,32 @@ bool fl_check_not_exists(const char *path, GError **error)
     return !g_file_test(path, G_FILE_TEST_EXISTS) || fl_exists_error(error, path);
 }
 
-void fl_tell(void (*to)(const char *message, void *data), void *data, const char *format, ...)
+void fl_note(const FlCaller *caller, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    g_autofree char *line = to ? g_strdup_vprintf(format, arguments) : NULL;
+    g_autofree char *line = g_strdup_vprintf(format, arguments);
     va_end(arguments);
-    if (to)
-        to(line, data);
+    if (caller->note)
+        caller->note(line, caller->data);
+}
+
+bool fl_warn(const FlCaller *caller, GError **error, FlError code, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    g_autofree char *line = g_strdup_vprintf(format, arguments);
+    va_end(arguments);
+    if (caller->strict)
+        return fl_fail(error, code, "%s (a warning under ‘strict’)", line);
+    if (caller->warning)
+        caller->warning(line, caller->data);
+    return true;
+}
+
+double fl_elapsed(const FlCaller *caller)
+{
+    return (double)(g_get_monotonic_time() - caller->start) * 1e-6;
 }
 
 void fl_parallel_error_keep(GError **first, GError *failure)

@@ -23,9 +23,28 @@ typedef struct FlStop {
 /** Returns: true with FL_ERROR_INTERRUPTED if the caller wants to stop. stop: NULL: no caller. */
 bool fl_stop_asked(const FlStop *stop, GError **error);
 
-/** Sends a line to a callback of a caller, such as FlRenderOptions.note; `to` may be NULL. */
-void fl_tell(void (*to)(const char *message, void *data), void *data, const char *format, ...)
-    G_GNUC_PRINTF(3, 4);
+typedef struct FlProgress FlProgress;
+
+/** The caller of a render, who is told about it and may stop it; each callback may be NULL. */
+typedef struct FlCaller {
+    bool (*progress)(const FlProgress *progress, void *data);
+    bool (*stopped)(void *data);
+    void (*warning)(const char *message, void *data);
+    void (*note)(const char *message, void *data);
+    void *data;
+    gint64 start; // of the render, microseconds, as g_get_monotonic_time()
+    bool strict;  // a warning is an error
+} FlCaller;
+
+/** Sends a note to the caller. */
+void fl_note(const FlCaller *caller, const char *format, ...) G_GNUC_PRINTF(2, 3);
+
+/** Sends a warning to the caller. Returns: false if it is strict, with an error set instead. */
+bool fl_warn(const FlCaller *caller, GError **error, FlError code, const char *format, ...)
+    G_GNUC_PRINTF(4, 5);
+
+/** Seconds since the render began. */
+double fl_elapsed(const FlCaller *caller);
 
 /** Moves `failure` (may be NULL) into *first, or frees it if there is one already. Any thread.
  */

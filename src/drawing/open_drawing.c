@@ -116,7 +116,7 @@ static GHashTable *count_texts(const FlWarnings *warnings)
     return counts;
 }
 
-static bool report(const FlWarnings *warnings, const FlRenderOptions *options, GError **error)
+static bool report(const FlWarnings *warnings, const FlCaller *caller, GError **error)
 {
     const int n = fl_warnings_count(warnings);
     g_autoptr(GHashTable) counts = count_texts(warnings);
@@ -130,47 +130,38 @@ static bool report(const FlWarnings *warnings, const FlRenderOptions *options, G
                                     ? g_strdup(first)
                                     : g_strdup_printf("%s; and so for %d more element%s", first,
                                                       n_alike - 1, n_alike == 2 ? "" : "s");
-        if (options->strict) {
+        if (caller->strict) {
             g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s (%d warning%s under ‘strict’)", line,
                         n, n == 1 ? "" : "s");
             return false;
         }
-        fl_tell(options->warning, options->data, "%s", line);
+        (void)fl_warn(caller, NULL, FL_ERROR_INPUT, "%s", line);
     }
     return true;
 }
 
 /* Mentions a config beside the drawing, which is used on request only. */
-static void offer_config(const FlDrawing *drawing, const FlRenderOptions *options)
+static void offer_config(const FlDrawing *drawing, bool given, const FlCaller *caller)
 {
     g_autofree char *folder = g_path_get_dirname(fl_drawing_file(drawing, 0));
     g_autofree char *path = strcmp(folder, ".") == 0
                                 ? g_strdup("fluidy-svg.conf")
                                 : g_build_filename(folder, "fluidy-svg.conf", NULL);
-    if (!options->config && g_file_test(path, G_FILE_TEST_IS_REGULAR))
-        fl_tell(options->note, options->data, "%s is not used; ‘config’ %s paints by it", path,
-                path);
+    if (!given && g_file_test(path, G_FILE_TEST_IS_REGULAR))
+        fl_note(caller, "%s is not used; ‘config’ %s paints by it", path, path);
 }
-
-/* The state of tell_reading(). */
-typedef struct Telling {
-    const FlRenderOptions *options;
-    gint64 start; // microseconds
-} Telling;
 
 static bool tell_reading(void *data, const FlSequence *sequence, int done)
 {
-    const Telling *telling = data;
-    const FlRenderOptions *o = telling->options;
+    const FlCaller *caller = data;
     const FlProgress progress = {.stage = "read",
                                  .region_index = -1,
                                  .frame = sequence->number[done - 1],
                                  .done = done,
                                  .total = sequence->n,
-                                 .elapsed_s =
-                                     (double)(g_get_monotonic_time() - telling->start) * 1e-6,
+                                 .elapsed_s = fl_elapsed(caller),
                                  .remaining_s = -1};
-    return o->progress(&progress, o->data);
+    return caller->progress(&progress, caller->data);
 }
 
 /** The moments of a drawing that plays. */
@@ -181,12 +172,11 @@ static FlMoments moments_of(const FlRenderOptions *options)
 }
 
 FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfig *config,
-                                   GError **error)
+                                   const FlCaller *caller, GError **error)
 {
     if (!fl_headroom_check(error))
         return NULL;
     g_autofree FlRegionRule *rules = rules_of(config);
-    Telling telling = {options, g_get_monotonic_time()};
     FlDrawingOptions wanted = {.inputs = options->inputs,
                                .n_inputs = (int)g_strv_length((char **)options->inputs),
                                .range = options->frames,
@@ -203,8 +193,8 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
                                .most_side = options->most_side,
                                .strokes = options->stroke,
                                .key = options->key,
-                               .reading = options->progress ? tell_reading : NULL,
-                               .data = &telling,
+                               .reading = caller->progress ? tell_reading : NULL,
+                               .data = (void *)(uintptr_t)caller,
                                .rules = rules,
                                .n_rules = config->n_rules};
     if (options->canvas && !fl_canvas_parse(options->canvas, &wanted.canvas, error))
@@ -213,13 +203,13 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
     g_autoptr(FlDrawing) drawing = fl_drawing_open(&wanted, warnings, error);
     if (!drawing)
         return NULL;
-    offer_config(drawing, options);
+    offer_config(drawing, options->config, caller);
     warn_of_nothing(drawing, warnings);
     warn_of_unused(drawing, config, &wanted, warnings);
     if (options->missing > FL_MISSING_ERROR &&
         !fl_drawing_leave_out_bad(drawing, options->missing, warnings, error))
         return NULL;
-    return report(warnings, options, error) ? g_steal_pointer(&drawing) : NULL;
+    return report(warnings, caller, error) ? g_steal_pointer(&drawing) : NULL;
 }
 
 FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **error)

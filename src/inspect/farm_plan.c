@@ -31,9 +31,10 @@ static void clear_task(Task *task)
  * less often. */
 static double work_of(const FlPlan *plan, int p)
 {
-    const FlRegionPlan *painted = &plan->painted[p];
-    const FlRegion *region = fl_drawing_region(plan->drawing, painted->region);
-    const double page = (double)fl_drawing_width(plan->drawing) * fl_drawing_height(plan->drawing);
+    const FlShapes *shapes = &plan->shapes;
+    const FlRegionPlan *painted = &shapes->painted[p];
+    const FlRegion *region = fl_drawing_region(shapes->drawing, painted->region);
+    const double page = (double)shapes->width * shapes->height;
     return (region->area_px + page / 256) * region->n_present / painted->settings.hold;
 }
 
@@ -52,21 +53,21 @@ static int larger_share_first(const void *a, const void *b)
 
 static void add_task(Farm *farm, int p, double share)
 {
-    const Task task = {g_string_new(farm->plan->painted[p].name), share};
+    const Task task = {g_string_new(farm->plan->shapes.painted[p].name), share};
     g_array_append_val(farm->tasks, task);
 }
 
 /* Returns: true if a task has a region, in all its styles; p is its first one. */
 static bool is_painted(const FlPlan *plan, int p)
 {
-    const int region = plan->painted[p].region;
-    return plan->painted_of[region] == p && !fl_plan_hides(plan, region);
+    const int region = plan->shapes.painted[p].region;
+    return plan->shapes.painted_of[region] == p && !fl_shapes_hide(&plan->shapes, region);
 }
 
 static int count_painted(const FlPlan *plan)
 {
     int n = 0;
-    for (int p = 0; p < plan->n_painted; p++)
+    for (int p = 0; p < plan->shapes.n_painted; p++)
         n += is_painted(plan, p);
     return n;
 }
@@ -77,10 +78,11 @@ static int count_painted(const FlPlan *plan)
 static void make_tasks(Farm *farm)
 {
     const FlPlan *plan = farm->plan;
+    const FlShapes *shapes = &plan->shapes;
     int n = 0;
-    g_autofree int *order = g_new(int, plan->n_painted);
+    g_autofree int *order = g_new(int, shapes->n_painted);
     double total = 0, filled = 0;
-    for (int p = 0; p < plan->n_painted; p++) {
+    for (int p = 0; p < shapes->n_painted; p++) {
         if (is_painted(plan, p))
             order[n++] = p, total += work_of(plan, p);
     }
@@ -94,7 +96,7 @@ static void make_tasks(Farm *farm)
             continue;
         }
         Task *task = &g_array_index(farm->tasks, Task, farm->tasks->len - 1);
-        g_string_append_printf(task->regions, ",%s", plan->painted[order[k]].name);
+        g_string_append_printf(task->regions, ",%s", shapes->painted[order[k]].name);
         task->share += work / total;
         filled += work;
     }
@@ -106,7 +108,7 @@ static void make_tasks(Farm *farm)
 static int count_parts(const FlPlan *plan)
 {
     enum { WHOLE = 11, FRAMES_OF_PART = 24, MOST = 16 };
-    const int n = fl_drawing_frames(plan->drawing);
+    const int n = plan->shapes.n_frames;
     return plan->format->film || plan->options.stats || n <= WHOLE
                ? 1
                : CLAMP(n / FRAMES_OF_PART, 2, MOST);
@@ -243,9 +245,9 @@ static char *print_json(const Farm *farm, GError **error)
     if (!words_fit(farm, "JSON", is_text, error))
         return NULL;
     GString *text = g_string_new("{");
-    fl_json_text(text, "shot", fl_drawing_name(farm->plan->drawing));
+    fl_json_text(text, "shot", fl_drawing_name(farm->plan->shapes.drawing));
     fl_json_text(text, "folder", farm->folder);
-    fl_json_number(text, "frames", fl_drawing_frames(farm->plan->drawing), true);
+    fl_json_number(text, "frames", fl_drawing_frames(farm->plan->shapes.drawing), true);
     fl_json_number(text, "again_status", 75, true);
     g_string_append(text, ",\n \"tasks\": [");
     add_json_step(text, farm, STEP_PAINT);
@@ -319,7 +321,7 @@ static void add_slurm_words(GString *text, const Farm *farm, Step step)
 static void add_slurm_body(GString *text, const Farm *farm, Step step)
 {
     g_string_append(text, "shot=");
-    add_bash_word(text, fl_drawing_name(farm->plan->drawing));
+    add_bash_word(text, fl_drawing_name(farm->plan->shapes.drawing));
     g_string_append_c(text, '\n');
     add_slurm_variable(text, farm, step);
     g_string_append_printf(text,
@@ -350,7 +352,7 @@ static void add_slurm_step(GString *text, const Farm *farm, Step step)
                            "%s=$(sbatch --parsable --requeue --open-mode=append "
                            "--signal=B:TERM@60 --job-name=",
                            slurm_steps[step].variable);
-    add_bash_word(text, fl_drawing_name(farm->plan->drawing));
+    add_bash_word(text, fl_drawing_name(farm->plan->shapes.drawing));
     if (step == STEP_PAINT || n > 1)
         g_string_append_printf(text, " --array=0-%d", n - 1);
     if (step > STEP_PAINT)
@@ -443,8 +445,8 @@ static char *print_openjd(const Farm *farm, GError **error)
     if (!words_fit(farm, "Open Job Description", is_argument, error))
         return NULL;
     g_autofree char *name =
-        g_utf8_substring(fl_drawing_name(farm->plan->drawing), 0,
-                         MIN(128, g_utf8_strlen(fl_drawing_name(farm->plan->drawing), -1)));
+        g_utf8_substring(fl_drawing_name(farm->plan->shapes.drawing), 0,
+                         MIN(128, g_utf8_strlen(fl_drawing_name(farm->plan->shapes.drawing), -1)));
     GString *text = g_string_new("{");
     fl_json_text(text, "specificationVersion", "jobtemplate-2023-09");
     fl_json_text(text, "name", name);
@@ -470,7 +472,7 @@ static char *paint_pattern(const FlPlan *plan, const char *paint)
 {
     if (paint)
         return g_strdup(paint);
-    g_autoptr(GString) name = g_string_new(fl_drawing_name(plan->drawing));
+    g_autoptr(GString) name = g_string_new(fl_drawing_name(plan->shapes.drawing));
     g_string_replace(name, "%", "%%", 0);
     return g_strdup_printf("fluidy/%s_paint/{region}_%%04d.png", name->str);
 }
@@ -497,7 +499,7 @@ char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *cons
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "%s: no region is painted, so that there is "
                     "nothing to plan",
-                    fl_drawing_name(plan->drawing));
+                    fl_drawing_name(plan->shapes.drawing));
         return NULL;
     }
     Farm all = {.plan = plan,

@@ -18,6 +18,7 @@
 /* A drawing with its options. */
 typedef struct Subject {
     FlRenderOptions options; // complete
+    FlCaller caller;         // of them
     FlConfig *config;
     FlDrawing *drawing;
 } Subject;
@@ -37,12 +38,14 @@ static bool subject_configure(Subject *subject, const FlRenderOptions *options, 
         !(subject->config = fl_config_load(o->config, o, error)))
         return false;
     fl_config_complete(subject->config, &subject->options);
+    subject->caller = fl_caller_of(o);
     return true;
 }
 
 static bool subject_read(Subject *subject, GError **error)
 {
-    subject->drawing = fl_drawing_from_options(&subject->options, subject->config, error);
+    subject->drawing =
+        fl_drawing_from_options(&subject->options, subject->config, &subject->caller, error);
     return subject->drawing != NULL;
 }
 
@@ -441,10 +444,9 @@ static bool write_frames(const FlRenderOptions *options, const char *what, Write
         if (!write(&subject, f, pattern, error))
             return false;
     g_autofree char *gaps = fl_drawing_left_out(subject.drawing, subject.options.missing);
-    const FlRenderOptions *o = &subject.options;
-    fl_tell(o->note, o->data, "%d %s%s: %s", n, what, n == 1 ? "" : "s", pattern);
+    fl_note(&subject.caller, "%d %s%s: %s", n, what, n == 1 ? "" : "s", pattern);
     if (gaps)
-        fl_tell(o->note, o->data, "%s", gaps);
+        fl_note(&subject.caller, "%s", gaps);
     return true;
 }
 

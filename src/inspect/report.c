@@ -40,8 +40,8 @@ struct FlReport {
 /* Chooses the size of the pictures, and how many frames have them, within MOST_PIXELS. */
 static void choose_size(FlReport *report)
 {
-    const int width = report->plan->width, height = report->plan->height;
-    const int n = fl_drawing_frames(report->plan->drawing), larger = MAX(width, height);
+    const int width = report->plan->shapes.page_width, height = report->plan->shapes.page_height;
+    const int n = fl_drawing_frames(report->plan->shapes.drawing), larger = MAX(width, height);
     const double smaller = (double)MIN(width, height) / larger;
     const double side = MAX(sqrt(PAGE_PIXELS / (n * smaller)), GOOD_SIDE);
     const double most_side = MIN(sqrt(MOST_PIXELS / (n * smaller)), MAX_SIDE);
@@ -74,13 +74,14 @@ static bool begin(FlReport *report, const char *folder, GError **error)
 FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, const char *folder,
                         GError **error)
 {
+    const FlShapes *shapes = &plan->shapes;
     g_autoptr(FlReport) report = g_new0(FlReport, 1);
     report->plan = plan, report->background = background;
     g_mutex_init(&report->lock);
-    report->flicker = g_new0(FlFlicker, MAX(plan->n_painted, 1));
-    report->point = g_new0(FlFollowedPoint, MAX(plan->n_painted, 1));
-    report->painter_seconds = g_new0(double, MAX(plan->n_painted, 1));
-    report->use = g_new0(FlExemplarUse, MAX(plan->n_painted, 1));
+    report->flicker = g_new0(FlFlicker, MAX(shapes->n_painted, 1));
+    report->point = g_new0(FlFollowedPoint, MAX(shapes->n_painted, 1));
+    report->painter_seconds = g_new0(double, MAX(shapes->n_painted, 1));
+    report->use = g_new0(FlExemplarUse, MAX(shapes->n_painted, 1));
     choose_size(report);
     if (!fl_guide_view_init(&report->view, report->width, report->height, error) ||
         !begin(report, folder, error))
@@ -92,7 +93,7 @@ void fl_report_free(FlReport *report)
 {
     if (!report)
         return;
-    for (int p = 0; p < report->plan->n_painted; p++) {
+    for (int p = 0; p < report->plan->shapes.n_painted; p++) {
         fl_flicker_clear(&report->flicker[p]);
         fl_exemplar_use_clear(&report->use[p]);
     }
@@ -109,10 +110,11 @@ void fl_report_free(FlReport *report)
 /* Returns: true at the middles of equal parts of the film, rounded down to a painted frame. */
 static bool shows_guides(const FlReport *report, int frame)
 {
-    const int n = fl_drawing_frames(report->plan->drawing);
+    const int n = fl_drawing_frames(report->plan->shapes.drawing);
     for (int k = 0; k < GUIDE_FRAMES; k++) {
         const int middle = (2 * k + 1) * n / (2 * GUIDE_FRAMES);
-        if (frame == fl_drawing_shown(report->plan->drawing, middle - middle % report->plan->hold))
+        if (frame == fl_drawing_shown(report->plan->shapes.drawing,
+                                      middle - middle % report->plan->shapes.hold))
             return true;
     }
     return false;
@@ -166,10 +168,9 @@ static bool write_scaled(FlReport *report, const FlPicture *whole, bool opaque, 
 static bool write_pictures(FlReport *report, const FlComposite *composite, GError **error)
 {
     FILE *out = report->out;
-    const FlPlan *plan = report->plan;
-    const FlPicture after = {plan->width, plan->height, composite->rgba};
-    g_autoptr(FlPicture) drawn =
-        fl_picture_new(fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing), error);
+    const FlShapes *shapes = &report->plan->shapes;
+    const FlPicture after = {shapes->page_width, shapes->page_height, composite->rgba};
+    g_autoptr(FlPicture) drawn = fl_picture_new(shapes->width, shapes->height, error);
     if (!drawn)
         return false;
     fputs(",after:", out);
@@ -179,7 +180,7 @@ static bool write_pictures(FlReport *report, const FlComposite *composite, GErro
     fputs(",before:", out);
     if (!write_scaled(report, drawn, false, error))
         return false;
-    fl_draw_list_map(plan->drawing, composite->draws, drawn->rgba);
+    fl_draw_list_map(shapes->drawing, composite->draws, drawn->rgba);
     fputs(",map:", out);
     return write_scaled(report, drawn, false, error);
 }
@@ -189,14 +190,15 @@ static void write_painters(FlReport *report, const FlReportFrame *frame)
 {
     FILE *out = report->out;
     fputs(",painters:[", out);
-    for (int p = 0; p < report->plan->n_painted; p++) {
+    for (int p = 0; p < report->plan->shapes.n_painted; p++) {
         const FlPaintedRegion *painted = frame->painted[p];
         const bool searched = painted->stats.n_levels > 0 && painted->stats.level[0].pixels > 0;
         fputs(p > 0 ? ",[" : "[", out);
         fl_script_number(out, searched ? painted->stats.level[0].energy : NAN);
         fputc(',', out);
-        const bool held = frame->frame % painted->settings->hold != 0 ||
-                          fl_drawing_shown(report->plan->drawing, frame->frame) != frame->frame;
+        const bool held =
+            frame->frame % painted->settings->hold != 0 ||
+            fl_drawing_shown(report->plan->shapes.drawing, frame->frame) != frame->frame;
         fl_script_number(out, held ? 0 : report->flicker[p].change);
         fputc(',', out);
         fl_script_number(out, held ? 0 : painted->seconds);
@@ -212,7 +214,7 @@ static void write_points(FlReport *report, bool pictures)
 {
     FILE *out = report->out;
     fputs(",points:[", out);
-    for (int p = 0; p < report->plan->n_painted; p++) {
+    for (int p = 0; p < report->plan->shapes.n_painted; p++) {
         FlFollowedPoint *point = &report->point[p];
         const float values[] = {point->x, point->y, point->turn, point->found};
         fputs(p > 0 ? "," : "", out);
@@ -244,7 +246,7 @@ bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **erro
         return true;
     FILE *out = report->out;
     fprintf(out, "<script>frames.push({number:%d",
-            fl_drawing_number(report->plan->drawing, frame->frame));
+            fl_drawing_number(report->plan->shapes.drawing, frame->frame));
     write_seconds(report, frame);
     write_painters(report, frame);
     const bool pictures = frame->frame % report->every == 0;
@@ -266,11 +268,11 @@ bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **erro
 static void write_region(const FlReport *report, int r)
 {
     FILE *out = report->out;
-    const FlPlan *plan = report->plan;
-    const FlRegion *region = fl_drawing_region(plan->drawing, r);
-    const int p = plan->painted_of[r];
+    const FlShapes *shapes = &report->plan->shapes;
+    const FlRegion *region = fl_drawing_region(shapes->drawing, r);
+    const int p = shapes->painted_of[r];
     uint8_t rgb[3];
-    fl_region_colour(plan->drawing, r, rgb);
+    fl_region_colour(shapes->drawing, r, rgb);
     fputs("{name:", out);
     fl_script_string(out, region->name);
     fputs(",label:", out);
@@ -283,11 +285,11 @@ static void write_region(const FlReport *report, int r)
     fl_script_number(out, region->area_px);
     fprintf(out, ",present:%d,painter:%d", region->n_present, p);
     if (p >= 0) {
-        g_autofree char *style = g_path_get_basename(plan->painted[p].style->path);
+        g_autofree char *style = g_path_get_basename(shapes->painted[p].style->path);
         fputs(",style:", out);
         fl_script_string(out, style);
         fputs(",change:", out);
-        fl_script_number(out, fl_flicker_of_exemplar(plan->painted[p].style->exemplar));
+        fl_script_number(out, fl_flicker_of_exemplar(shapes->painted[p].style->exemplar));
         fputs(",seconds:", out);
         fl_script_number(out, report->painter_seconds[p]);
     }
@@ -297,7 +299,7 @@ static void write_region(const FlReport *report, int r)
 static void write_regions(const FlReport *report)
 {
     fputs("regions:[", report->out);
-    for (int r = 0; r < fl_drawing_regions(report->plan->drawing); r++) {
+    for (int r = 0; r < fl_drawing_regions(report->plan->shapes.drawing); r++) {
         fputs(r > 0 ? "," : "", report->out);
         write_region(report, r);
     }
@@ -309,7 +311,7 @@ static bool write_uses(const FlReport *report, GError **error)
     FILE *out = report->out;
     const char *comma = "";
     fputs(",uses:[", out);
-    for (int k = 0; k < report->plan->n_painted; k++) {
+    for (int k = 0; k < report->plan->shapes.n_painted; k++) {
         if (report->use[k].total == 0)
             continue;
         fputs(comma, out);
@@ -325,9 +327,10 @@ static bool write_film(const FlReport *report, GError **error)
 {
     FILE *out = report->out;
     const FlPlan *plan = report->plan;
+    const FlShapes *shapes = &plan->shapes;
     const double fps = plan->options.fps;
     fputs("<script>film={name:", out);
-    fl_script_string(out, fl_drawing_name(plan->drawing));
+    fl_script_string(out, fl_drawing_name(shapes->drawing));
     fputs(",output:", out);
     fl_script_string(out, plan->output);
     fputs(",version:", out);
@@ -337,8 +340,8 @@ static bool write_film(const FlReport *report, GError **error)
     fprintf(out,
             ",width:%d,height:%d,drawn:%d,shown:[%d,%d],every:%d,measured:true,"
             "transparent:%s,fps:",
-            plan->width, plan->height, fl_drawing_width(plan->drawing), report->width,
-            report->height, report->every, report->background->none ? "true" : "false");
+            shapes->page_width, shapes->page_height, shapes->width, report->width, report->height,
+            report->every, report->background->none ? "true" : "false");
     fl_script_number(out, fps > 0 ? fps : 24);
     fputs(",peak:", out);
     fl_script_number(out, fl_peak_mib());

@@ -12,7 +12,7 @@ typedef struct FlReport FlReport;
 typedef struct FlReportFrame {
     int frame; // index into the film
     const FlComposite *composite;
-    const FlPaintedRegion *const *painted; // plan->n_painted of them
+    const FlPaintedRegion *const *painted; // plan->shapes.n_painted of them
     double paint_s, compose_s, write_s;
 } FlReportFrame;
 

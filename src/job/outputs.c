@@ -22,18 +22,19 @@ static bool add(GPtrArray *files, char *name)
 
 GPtrArray *fl_frame_files(const FlPlan *plan, int frame, GError **error)
 {
+    const FlShapes *shapes = &plan->shapes;
     const FlRenderOptions *o = &plan->options;
-    const int number = fl_drawing_number(plan->drawing, frame);
+    const int number = fl_drawing_number(shapes->drawing, frame);
     g_autoptr(GPtrArray) files = g_ptr_array_new_with_free_func(g_free);
     if (fl_frame_has_picture(plan) &&
         !add(files, fl_output_name(plan->output, number, NULL, error)))
         return NULL;
-    for (int p = 0; p < plan->n_painted; p++) {
-        const FlRegionPlan *region = &plan->painted[p];
+    for (int p = 0; p < shapes->n_painted; p++) {
+        const FlRegionPlan *region = &shapes->painted[p];
         if (o->layers && !add(files, fl_output_name(o->layers, number, region->name, error)))
             return NULL;
         if (o->paint && !o->merge && frame % region->settings.hold == 0 &&
-            !add(files, fl_paint_file_name(o->paint, plan->drawing, region, frame, error)))
+            !add(files, fl_paint_file_name(o->paint, shapes->drawing, region, frame, error)))
             return NULL;
     }
     return g_steal_pointer(&files);
@@ -43,14 +44,14 @@ GPtrArray *fl_frame_files(const FlPlan *plan, int frame, GError **error)
 
 static bool may_write(const FlPlan *plan, char *name, GError **error)
 {
-    return fl_inputs_may_write(plan->inputs, plan->drawing, name, error);
+    return fl_inputs_may_write(plan->inputs, plan->shapes.drawing, name, error);
 }
 
 /* Checks the files in a folder of each region, below `in`, which may be NULL. */
 static bool may_fill_folders(const FlPlan *plan, const char *in, GError **error)
 {
-    for (int p = 0; in && p < plan->n_painted; p++) {
-        g_autofree char *folder = g_build_filename(in, plan->painted[p].name, NULL);
+    for (int p = 0; in && p < plan->shapes.n_painted; p++) {
+        g_autofree char *folder = g_build_filename(in, plan->shapes.painted[p].name, NULL);
         g_autoptr(GDir) dir = g_dir_open(folder, 0, NULL);
         for (const char *name; dir && (name = g_dir_read_name(dir));)
             if (!may_write(plan, g_build_filename(folder, name, NULL), error))
@@ -80,7 +81,7 @@ bool fl_guard_inputs(const FlPlan *plan, GError **error)
         !may_fill_folders(plan, o->dump, error) ||
         !may_fill_folders(plan, o->merge ? NULL : o->ebsynth, error))
         return false;
-    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++)
+    for (int f = 0; f < plan->shapes.n_frames; f++)
         if (!may_write_frame(plan, f, error))
             return false;
     return true;

@@ -12,7 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-#define LARGE_PX 3000000
 #define KEPT_CHOICES 16 // as many times all pictures of the film are in memory
 #define SMALL_PX 500000 // that are painted: up to here a heap for each thread takes little
 
@@ -43,30 +42,35 @@ static FlDigest digest_of_reading(const FlRenderOptions *options, const FlConfig
 
 static bool open_drawing(FlPlan *plan, const FlPlan *before, GError **error)
 {
+    FlShapes *shapes = &plan->shapes;
     g_auto(FlRegionSettings) general = {0};
     if (!fl_config_region_settings(plan->config, -1, "", &plan->options, NULL, &general, error))
         return false;
-    plan->hold = general.hold;
+    shapes->hold = general.hold;
     plan->reading = digest_of_reading(&plan->options, plan->config);
     const bool same = before && fl_digest_is_same(plan->reading, before->reading);
-    plan->drawing =
-        same ? before->drawing : fl_drawing_from_options(&plan->options, plan->config, error);
-    return plan->drawing != NULL;
+    shapes->drawing =
+        same ? before->shapes.drawing
+             : fl_drawing_from_options(&plan->options, plan->config, &plan->caller, error);
+    shapes->n_frames = shapes->drawing ? fl_drawing_frames(shapes->drawing) : 0;
+    return shapes->drawing != NULL;
 }
 
 /* A drawing that is taken over has its size already. */
 static void choose_size(FlPlan *plan, const FlPlan *before)
 {
-    const bool same = before && plan->drawing == before->drawing;
-    plan->width = same ? before->width : fl_drawing_width(plan->drawing);
-    plan->height = same ? before->height : fl_drawing_height(plan->drawing);
-    plan->paper_px = plan->by_page ? fl_page_scale(plan->width, plan->height) : 1;
+    FlShapes *shapes = &plan->shapes;
+    const bool same = before && shapes->drawing == before->shapes.drawing;
+    shapes->page_width = same ? before->shapes.page_width : fl_drawing_width(shapes->drawing);
+    shapes->page_height = same ? before->shapes.page_height : fl_drawing_height(shapes->drawing);
+    shapes->paper_px = plan->by_page ? fl_page_scale(shapes->page_width, shapes->page_height) : 1;
     if (plan->half && !same)
-        fl_drawing_halve(plan->drawing);
+        fl_drawing_halve(shapes->drawing);
     if (plan->half)
-        plan->paper_px /= 2;
-    const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
-    if ((size_t)width * (size_t)height <= SMALL_PX)
+        shapes->paper_px /= 2;
+    shapes->width = fl_drawing_width(shapes->drawing);
+    shapes->height = fl_drawing_height(shapes->drawing);
+    if ((size_t)shapes->width * (size_t)shapes->height <= SMALL_PX)
         fl_memory_separate_heaps(); // before there are threads
 }
 
@@ -92,24 +96,36 @@ static bool check_options(const FlRenderOptions *options, GError **error)
 
 static void list_inputs(FlPlan *plan)
 {
-    g_autofree const char **regions = g_new0(const char *, plan->n_painted + 1);
-    for (int p = 0; p < plan->n_painted; p++)
-        regions[p] = plan->painted[p].name;
-    fl_inputs_add_options(plan->inputs, &plan->options, plan->drawing, regions);
-    for (int k = fl_plan_earliest(plan); k < fl_drawing_earlier(plan->drawing); k++)
-        fl_inputs_add(plan->inputs, fl_drawing_found_files(plan->drawing)[k]);
+    const FlShapes *shapes = &plan->shapes;
+    g_autofree const char **regions = g_new0(const char *, shapes->n_painted + 1);
+    for (int p = 0; p < shapes->n_painted; p++)
+        regions[p] = shapes->painted[p].name;
+    fl_inputs_add_options(plan->inputs, &plan->options, shapes->drawing, regions);
+    for (int k = fl_plan_earliest(plan); k < fl_drawing_earlier(shapes->drawing); k++)
+        fl_inputs_add(plan->inputs, fl_drawing_found_files(shapes->drawing)[k]);
 }
 
 /* Finds the places of the paint and the hidden regions before a merge reads any paint. */
 static bool look_at_paint(FlPlan *plan, GError **error)
 {
-    for (int p = 0; p < plan->n_painted; p++)
-        fl_paint_file_find_place(plan->drawing, &plan->painted[p]);
-    return fl_plan_find_hidden(plan, error);
+    const FlShapes *shapes = &plan->shapes;
+    for (int p = 0; p < shapes->n_painted; p++)
+        fl_paint_file_find_place(shapes->drawing, &shapes->painted[p]);
+    return fl_shapes_find_hidden(&plan->shapes, &plan->caller, error);
+}
+
+/* Layers, which can be moved apart, show hidden regions. */
+static bool are_frames_alone(const FlPlan *plan)
+{
+    const FlRenderOptions *o = &plan->options;
+    const bool gives_paint = !o->merge && (o->paint || o->ebsynth);
+    return !plan->any_order && !o->layers && !plan->format->takes_layers && !o->only_region &&
+           !gives_paint && !o->dump && !o->report;
 }
 
 static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
 {
+    FlShapes *shapes = &plan->shapes;
     if (!plan->options.inputs || !plan->options.inputs[0])
         return fl_fail(
             error, FL_ERROR_USAGE,
@@ -121,19 +137,21 @@ static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
         return true;
     if (!open_drawing(plan, before, error))
         return false;
-    fl_plan_part(plan, fl_drawing_frames(plan->drawing), &plan->first, &plan->end);
-    fl_inputs_add_drawing(plan->inputs, plan->drawing);
+    fl_plan_part(plan, shapes->n_frames, &plan->first, &plan->end);
+    shapes->frames_alone = are_frames_alone(plan);
+    shapes->loop = plan->options.loop, shapes->seed = plan->options.seed;
+    shapes->stop = (FlStop){plan->any_order ? plan->options.stopped : NULL, plan->options.data};
+    fl_inputs_add_drawing(plan->inputs, shapes->drawing);
     if (!fl_plan_find_regions(plan, error))
         return false;
     choose_size(plan, before);
     // styles may be enlarged, for which too little memory would end the program
-    if (!fl_limit_check(FL_LIMIT_MEMORY, ceil(fl_plan_least_bytes(plan) / (1 << 20)),
-                        fl_drawing_name(plan->drawing), error) ||
+    if (!fl_limit_check(FL_LIMIT_MEMORY, ceil(fl_shapes_least_bytes(&plan->shapes) / (1 << 20)),
+                        fl_drawing_name(shapes->drawing), error) ||
         !fl_plan_choose_styles(plan, error))
         return false;
     list_inputs(plan);
-    fl_store_hold_most(plan->cache,
-                       (guint)(KEPT_CHOICES * plan->n_painted * fl_drawing_frames(plan->drawing)));
+    fl_store_hold_most(plan->cache, (guint)(KEPT_CHOICES * shapes->n_painted * shapes->n_frames));
     return (!plan->options.merge || plan->finished == FL_FINISHED_FRAMES ||
             look_at_paint(plan, error));
 }
@@ -167,9 +185,11 @@ static bool begin(FlPlan *plan, const FlPlan *before, const FlRenderOptions *opt
     const bool same_config = before && before->options.config == options->config &&
                              before->options.config_text == options->config_text;
     plan->options = *options;
-    plan->start = g_get_monotonic_time();
+    plan->caller = fl_caller_of(options);
     plan->any_order = before || memory > 0;
-    plan->styles = before ? before->styles : fl_style_cache_new(options);
+    plan->styles =
+        before ? before->styles : fl_style_cache_new(!options->dry_run, options->ebsynth);
+    fl_style_cache_set_caller(plan->styles, &plan->caller);
     plan->inputs = before ? before->inputs : fl_inputs_new(options->reads, options->data);
     if (!before && !fl_sealed_read_key(error))
         return false;
@@ -192,8 +212,8 @@ static void leave_shared(FlPlan *to, FlPlan *from)
 {
     if (from->config == to->config)
         from->config = NULL;
-    if (from->drawing == to->drawing)
-        from->drawing = NULL;
+    if (from->shapes.drawing == to->shapes.drawing)
+        from->shapes.drawing = NULL;
     if (from->styles == to->styles)
         from->styles = NULL;
     if (from->cache == to->cache)
@@ -205,18 +225,20 @@ static void leave_shared(FlPlan *to, FlPlan *from)
 /* Whether the masks of a plan with the same drawing, and what is around regions, are its own. */
 static bool has_masks_of(const FlPlan *plan, const FlPlan *before)
 {
-    const size_t n = (size_t)fl_drawing_regions(plan->drawing);
-    return before->rasterised &&
-           memcmp(plan->painted_of, before->painted_of, n * sizeof(int)) == 0 &&
-           memcmp(plan->edge_limits, before->edge_limits, n * sizeof(FlEdge)) == 0;
+    const FlShapes *shapes = &plan->shapes;
+    const size_t n = (size_t)fl_drawing_regions(shapes->drawing);
+    return before->shapes.rasterised &&
+           memcmp(shapes->painted_of, before->shapes.painted_of, n * sizeof(int)) == 0 &&
+           memcmp(shapes->edge_limits, before->shapes.edge_limits, n * sizeof(FlEdge)) == 0;
 }
 
 static void take_masks(FlPlan *plan, FlPlan *before)
 {
-    FlSurround *surround = plan->surround;
-    plan->masks = before->masks, plan->surround = before->surround;
-    before->masks = NULL, before->surround = surround;
-    plan->rasterised = true;
+    FlShapes *shapes = &plan->shapes;
+    FlSurround *surround = shapes->surround;
+    shapes->masks = before->shapes.masks, shapes->surround = before->shapes.surround;
+    before->shapes.masks = NULL, before->shapes.surround = surround;
+    shapes->rasterised = true;
 }
 
 /* same_drawing: the drawing is taken over if the options say so. */
@@ -228,7 +250,8 @@ static FlPlan *follow(FlPlan *before, bool same_drawing, const FlRenderOptions *
                       make_plan(plan, same_drawing ? before : NULL, error);
     if (!before && made)
         return plan;
-    const bool shares = before && plan->drawing && plan->drawing == before->drawing;
+    const bool shares =
+        before && plan->shapes.drawing && plan->shapes.drawing == before->shapes.drawing;
     const bool other_size = made && shares && plan->half != before->half;
     if (made && !other_size) {
         if (shares && has_masks_of(plan, before))
@@ -262,15 +285,18 @@ static int step_of(const FlDrawing *drawing)
 
 int fl_plan_earliest(const FlPlan *plan)
 {
-    return MAX(fl_drawing_earlier(plan->drawing) - FL_WET_FRAMES * step_of(plan->drawing), 0);
+    return MAX(fl_drawing_earlier(plan->shapes.drawing) -
+                   FL_WET_FRAMES * step_of(plan->shapes.drawing),
+               0);
 }
 
 FlPlan *fl_plan_earlier(const FlPlan *plan, int *first, GError **error)
 {
+    const FlShapes *shapes = &plan->shapes;
     enum { AFTER = 4 }; // frames that marks look ahead
-    const FlDrawing *drawing = plan->drawing;
+    const FlDrawing *drawing = shapes->drawing;
     const int number = fl_drawing_number(drawing, 0), step = step_of(drawing);
-    *first = MIN(fl_drawing_earlier(drawing) / step, FL_WET_FRAMES) / plan->hold * plan->hold;
+    *first = MIN(fl_drawing_earlier(drawing) / step, FL_WET_FRAMES) / shapes->hold * shapes->hold;
     g_autofree char *range =
         g_strdup_printf("%d-%dx%d", number - *first * step, number + AFTER * step, step);
     FlRenderOptions options = plan->options;
@@ -287,48 +313,30 @@ FlPlan *fl_plan_earlier(const FlPlan *plan, int *first, GError **error)
 
 void fl_plan_free(FlPlan *plan)
 {
+    const FlShapes *shapes = &plan->shapes;
     if (!plan)
         return;
-    for (int p = 0; p < plan->n_painted; p++) {
-        fl_region_settings_clear(&plan->painted[p].settings);
-        fl_keys_free(plan->painted[p].styles);
+    for (int p = 0; p < shapes->n_painted; p++) {
+        fl_region_settings_clear(&shapes->painted[p].settings);
+        fl_keys_free(shapes->painted[p].styles);
     }
-    g_free(plan->painted);
-    g_free(plan->painted_of);
-    g_free(plan->edge_limits);
-    g_free(plan->ground);
-    g_free(plan->seen);
-    g_free(plan->hold_of);
-    g_free(plan->hands);
+    g_free(shapes->painted);
+    g_free(shapes->painted_of);
+    g_free(shapes->edge_limits);
+    g_free(shapes->ground);
+    g_free(shapes->seen);
+    g_free(shapes->hold_of);
+    g_free(shapes->hands);
     g_free(plan->painted_by_ebsynth);
     g_free(plan->output);
     g_free(plan->movie);
     fl_store_close(plan->cache);
     fl_inputs_free(plan->inputs);
     fl_style_cache_free(plan->styles);
-    fl_surround_free(plan->surround);
-    fl_drawing_free(plan->drawing);
+    fl_surround_free(shapes->surround);
+    fl_drawing_free(shapes->drawing);
     fl_config_free(plan->config);
     g_free(plan);
-}
-
-bool fl_plan_frames_alone(const FlPlan *plan)
-{
-    const FlRenderOptions *o = &plan->options;
-    const bool gives_paint = !o->merge && (o->paint || o->ebsynth);
-    return !plan->any_order && !o->layers && !plan->format->takes_layers && !o->only_region &&
-           !gives_paint && !o->dump && !o->report;
-}
-
-bool fl_plan_is_large(const FlPlan *plan)
-{
-    return (size_t)plan->width * (size_t)plan->height > LARGE_PX;
-}
-
-double fl_plan_least_bytes(const FlPlan *plan)
-{
-    const double pixels = (double)plan->width * plan->height;
-    return 50e6 + 30 * pixels; // measured: the libraries, paper, a frame
 }
 
 bool fl_plan_is_of_paint(const FlPlan *plan)

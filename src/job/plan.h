@@ -20,50 +20,28 @@ typedef struct FlPlan {
     FlRenderOptions options; // completed from the config
     FlConfig *config;
     FlInputs *inputs; // all files that the render reads
-    FlDrawing *drawing;
-    FlSurround *surround;
-    const FlMaskStore *masks; // of the surround
-    FlEdge *edge_limits;      // by region
-    bool *ground;             // by region: it is the ground on which the others, figures, move
-    bool *seen; // by region: it is not painted, or something of it shows; NULL: not known
+    FlShapes shapes;  // as they are painted
     FlStyleCache *styles;
-    int n_painted;
-    FlRegionPlan *painted;
-    int *painted_of;     // by region: index into painted, FL_DRAWN_AS_IT_IS or FL_LEFT_OUT
-    int *hold_of;        // by region: frames; `hold` where it is not painted
-    FlRegionHand *hands; // by region: what draws it where it is not painted
-    int hold;            // the drawing changes on every hold-th frame
-    int width, height;   // of the frames
-    int part, n_parts;   // of a merge, `part` from 0
-    int first, end;      // the frames of this run, up to and without `end`
-    bool by_page;        // paint of some region, and so the paper, is as large as the page asks for
-    float paper_px;      // px of the page per px of the sheet of paper
-    bool half;           // drafts: the page is drawn, painted and composed at half their size
+    int part, n_parts; // of a merge, `part` from 0
+    int first, end;    // the frames of this run, up to and without `end`
+    bool by_page;      // paint of some region, and so the paper, is as large as the page asks for
+    bool half;         // drafts: the page is drawn, painted and composed at half their size
     char *painted_by_ebsynth; // pattern: options.paint where that is what is merged; or NULL
     char *output;             // pattern or file; of what an interrupted run leaves if parts_only
     bool parts_only;          // layers or paint are written, but no frames
     FlStore *cache;           // NULL: no paint is kept
     bool any_order;           // frames are asked for in any order, and options change
-    bool rasterised;          // the masks are there
     FlDigest reading;         // of what decides the drawing
     FlDigest request;         // of what was asked for, before anything of it is read
     FlDigest made_from;       // of all that decides the frames, if it is known before reading
     FlFinished finished;      // ALL: the rest of the plan is not made
     int n_finished;           // frames of what is finished
-    gint64 start;             // microseconds, as g_get_monotonic_time()
+    FlCaller caller;          // of the options
     const FlSinkFormat *format;
     char *movie; // the film made of the frames; may be NULL
     const FlSinkFormat *movie_format;
     uint8_t paper[3];
 } FlPlan;
-
-/** The share of the page that a region has on average of the film's frames. */
-double fl_plan_share_of_page(const FlPlan *plan, int region);
-
-#define FL_GROUND_SHARE 0.4 // of the page: a larger region is ground
-
-/** Frames after which no mark on wet paper is left: so many before it a frame depends on. */
-#define FL_WET_FRAMES 36
 
 /**
  * Reads config and drawing and settles how every region is painted, without painting or writing.
@@ -93,32 +71,11 @@ FlPlan *fl_plan_earlier(const FlPlan *plan, int *first, GError **error);
 /** The first of these files, of fl_drawing_found_files(); they go up to fl_drawing_earlier(). */
 int fl_plan_earliest(const FlPlan *plan);
 
-/** True if paint is used for frames only, here or in a merge, so that hidden regions need no paint.
- * Layers, which can be moved apart, show them. */
-bool fl_plan_frames_alone(const FlPlan *plan);
-
 /** The frames, of so many, that a part of a merge composes. */
 void fl_plan_part(const FlPlan *plan, int n_frames, int *first, int *end);
 
-/** True if frames are so large that pictures wait packed and free memory returns to the system
- * after each stage. On small pages, faulting it in again would take a tenth of a draft. */
-bool fl_plan_is_large(const FlPlan *plan);
-
-/** The memory that painting takes at least, whatever the regions and styles. */
-double fl_plan_least_bytes(const FlPlan *plan);
-
 /** True if only paint is made, as in the task of a farm; then no frame is composed. */
 bool fl_plan_is_of_paint(const FlPlan *plan);
-
-/** True if other regions hide this one in every frame, and its paint is used for frames only. Known
- * after fl_plan_rasterise() or fl_plan_find_hidden(), and in a merge. */
-bool fl_plan_hides(const FlPlan *plan, int region);
-
-/** Rasterises the masks of the painted regions in every frame into plan->masks. */
-bool fl_plan_rasterise(FlPlan *plan, GError **error);
-
-/** Looks which regions are hidden, without masks: it draws as many frames as show all regions. */
-bool fl_plan_find_hidden(FlPlan *plan, GError **error);
 
 /* ---- the steps of planning, in their order; each fills its part of the plan ---------------- */
 

@@ -35,7 +35,7 @@ static bool frames_share_a_file(const FlDrawing *drawing)
 /* The files of the frames, and those that they refer to. */
 static void add_drawings(FlFacts *facts, const FlPlan *plan)
 {
-    const FlDrawing *drawing = plan->drawing;
+    const FlDrawing *drawing = plan->shapes.drawing;
     guint n;
     g_autofree const char **linked =
         (const char **)g_hash_table_get_keys_as_array(fl_drawing_linked_files(drawing), &n);
@@ -51,15 +51,16 @@ static void add_drawings(FlFacts *facts, const FlPlan *plan)
 
 /* The files of an option that may name one for each frame; what is missing is told when it is
  * opened. */
-static void add_pattern(FlFacts *facts, const FlPlan *plan, const char *pattern, const char *region)
+static void add_pattern(FlFacts *facts, const FlShapes *shapes, FlInputs *inputs,
+                        const char *pattern, const char *region)
 {
     const bool each = fl_input_is_pattern(pattern);
     FlDigest sum = {0};
-    for (int f = 0; f < (each ? fl_drawing_frames(plan->drawing) : 1); f++) {
+    for (int f = 0; f < (each ? shapes->n_frames : 1); f++) {
         g_autofree char *file =
-            each ? fl_output_name(pattern, fl_drawing_number(plan->drawing, f), region, NULL)
+            each ? fl_output_name(pattern, fl_drawing_number(shapes->drawing, f), region, NULL)
                  : g_strdup(pattern);
-        const FlDigest digest = file ? fl_inputs_digest(plan->inputs, file) : (FlDigest){0};
+        const FlDigest digest = file ? fl_inputs_digest(inputs, file) : (FlDigest){0};
         fl_digest_add(&sum, &digest, sizeof digest);
     }
     fl_facts_add_digest(facts, pattern, sum);
@@ -95,28 +96,30 @@ void fl_facts_add_options(FlFacts *facts, FlOptionScope scope, const void *objec
 /* The results of options, then their values. */
 static void add_options(FlFacts *facts, const FlPlan *plan)
 {
+    const FlShapes *shapes = &plan->shapes;
     fl_facts_add(facts, "the format", plan->format->name);
-    fl_facts_add_number(facts, "the first frame's number", fl_drawing_number(plan->drawing, 0));
-    fl_facts_add_number(facts, "the width", plan->width);
-    fl_facts_add_number(facts, "the height", plan->height);
-    fl_facts_add_number(facts, "the hold", plan->hold);
+    fl_facts_add_number(facts, "the first frame's number", fl_drawing_number(shapes->drawing, 0));
+    fl_facts_add_number(facts, "the width", shapes->page_width);
+    fl_facts_add_number(facts, "the height", shapes->page_height);
+    fl_facts_add_number(facts, "the hold", shapes->hold);
     fl_facts_add_options(facts, FL_SCOPE_RENDER, &plan->options, NULL);
 }
 
 static void add_painted(FlFacts *facts, const FlPlan *plan)
 {
-    for (int p = 0; p < plan->n_painted; p++) {
-        const FlRegionPlan *painted = &plan->painted[p];
+    const FlShapes *shapes = &plan->shapes;
+    for (int p = 0; p < shapes->n_painted; p++) {
+        const FlRegionPlan *painted = &shapes->painted[p];
         fl_facts_add_options(facts, FL_SCOPE_REGION, &painted->settings, painted->name);
         if (painted->styles)
             fl_facts_add(facts, painted->name, painted->styles->text);
         if (painted->flow_files)
-            add_pattern(facts, plan, painted->flow_files, painted->name);
+            add_pattern(facts, &plan->shapes, plan->inputs, painted->flow_files, painted->name);
         if (painted->paint_files)
-            add_pattern(facts, plan, painted->paint_files, painted->name);
+            add_pattern(facts, &plan->shapes, plan->inputs, painted->paint_files, painted->name);
         bool known = false;
         for (int q = 0; q < p; q++)
-            known = known || g_str_equal(plan->painted[q].style->path, painted->style->path);
+            known = known || g_str_equal(shapes->painted[q].style->path, painted->style->path);
         if (!known)
             add_style(facts, plan->inputs, painted->style->path);
         if (painted->tile)
@@ -138,15 +141,16 @@ static void add_leaves(FlFacts *facts, const FlRegion *region)
 
 static void add_regions(FlFacts *facts, const FlPlan *plan)
 {
-    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++) {
-        const FlRegion *region = fl_drawing_region(plan->drawing, r);
+    const FlShapes *shapes = &plan->shapes;
+    for (int r = 0; r < fl_drawing_regions(shapes->drawing); r++) {
+        const FlRegion *region = fl_drawing_region(shapes->drawing, r);
         g_autofree char *name = g_strdup_printf("what becomes of region %s", region->name);
         add_leaves(facts, region);
         fl_facts_add(facts, name,
-                     plan->painted_of[r] >= 0                   ? "painted"
-                     : plan->painted_of[r] == FL_DRAWN_AS_IT_IS ? "drawn"
-                                                                : "left out");
-        const FlRegionHand hand = plan->hands[r];
+                     shapes->painted_of[r] >= 0                   ? "painted"
+                     : shapes->painted_of[r] == FL_DRAWN_AS_IT_IS ? "drawn"
+                                                                  : "left out");
+        const FlRegionHand hand = shapes->hands[r];
         g_autofree char *line = g_strdup_printf("line and line-boil of region %s", region->name);
         g_autofree char *drawn = g_strdup_printf("%d, %d", hand.line, hand.boil);
         if (hand.line != FL_LINE_PLAIN)
@@ -162,15 +166,15 @@ FlFacts *fl_plan_facts(const FlPlan *plan)
     add_options(facts, plan);
     add_drawings(facts, plan);
     add_regions(facts, plan); // last of the drawing, so that a changed file is named as the cause
-    for (int k = fl_plan_earliest(plan); k < fl_drawing_earlier(plan->drawing); k++)
-        add_file(facts, plan->inputs, fl_drawing_found_files(plan->drawing)[k]);
+    for (int k = fl_plan_earliest(plan); k < fl_drawing_earlier(plan->shapes.drawing); k++)
+        add_file(facts, plan->inputs, fl_drawing_found_files(plan->shapes.drawing)[k]);
     if (paper && g_file_test(paper, G_FILE_TEST_IS_REGULAR))
         add_file(facts, plan->inputs, paper);
     if (plan->options.directions)
         add_file(facts, plan->inputs, plan->options.directions);
     add_painted(facts, plan);
     if (background && fl_picture_named(background))
-        add_pattern(facts, plan, background, NULL);
+        add_pattern(facts, &plan->shapes, plan->inputs, background, NULL);
     return facts;
 }
 
@@ -206,11 +210,11 @@ static void add_numbers(FlFacts *facts, const FlDrawing *drawing)
 }
 
 /* The edges that paint crosses: a guide of depth may reach into all these shapes. */
-static void add_edges(FlFacts *facts, const FlPlan *plan)
+static void add_edges(FlFacts *facts, const FlShapes *shapes)
 {
     g_autoptr(GString) limits = g_string_new(NULL);
-    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
-        g_string_append_c(limits, (char)('0' + plan->edge_limits[r]));
+    for (int r = 0; r < fl_drawing_regions(shapes->drawing); r++)
+        g_string_append_c(limits, (char)('0' + shapes->edge_limits[r]));
     fl_facts_add(facts, "which edges are shared", limits->str);
 }
 
@@ -231,18 +235,25 @@ FlFacts *fl_region_facts(const FlShapes *shapes, const FlRegionPlan *region, FlI
     return facts;
 }
 
-void fl_region_facts_add_film(FlFacts *facts, const FlPlan *plan, int p)
+FlFacts *fl_plan_facts_of_paint(const FlPlan *plan)
 {
-    const FlRegionPlan *painted = &plan->painted[p];
+    FlFacts *facts = fl_facts_new();
+    const FlShapes *shapes = &plan->shapes;
     add_drawings(facts, plan);
-    add_numbers(facts, plan->drawing); // by which layers of one file differ
+    add_numbers(facts, shapes->drawing); // by which layers of one file differ
     add_values(facts, FL_SCOPE_RENDER, &plan->options, NULL, false);
-    fl_facts_add_number(facts, "the hold", plan->hold);
-    add_edges(facts, plan);
-    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
-        add_leaves(facts, fl_drawing_region(plan->drawing, r));
+    fl_facts_add_number(facts, "the hold", shapes->hold);
+    add_edges(facts, shapes);
+    for (int r = 0; r < fl_drawing_regions(shapes->drawing); r++)
+        add_leaves(facts, fl_drawing_region(shapes->drawing, r));
+    return facts;
+}
+
+void fl_region_facts_add_flow(FlFacts *facts, const FlShapes *shapes, int p, FlInputs *inputs)
+{
+    const FlRegionPlan *painted = &shapes->painted[p];
     if (painted->flow_files)
-        add_pattern(facts, plan, painted->flow_files, painted->name);
+        add_pattern(facts, shapes, inputs, painted->flow_files, painted->name);
 }
 
 /* ---- the request ------------------------------------------------------------------------------

@@ -27,9 +27,12 @@ void fl_facts_add_options(FlFacts *facts, FlOptionScope scope, const void *objec
  */
 FlFacts *fl_region_facts(const FlShapes *shapes, const FlRegionPlan *region, FlInputs *inputs);
 
-/** Adds all that decides the guides of plan->painted[p] in the whole film, before anything is
- * drawn: the drawings, how they are read, and which edges paint crosses. */
-void fl_region_facts_add_film(FlFacts *facts, const FlPlan *plan, int p);
+/** All that decides the guides of every region in the whole film, before anything is drawn: the
+ * drawings, how they are read, and which edges paint crosses. To be freed. */
+FlFacts *fl_plan_facts_of_paint(const FlPlan *plan);
+
+/** Adds the flow files of shapes->painted[p], whose guides they decide as well. */
+void fl_region_facts_add_flow(FlFacts *facts, const FlShapes *shapes, int p, FlInputs *inputs);
 
 /**
  * The digest of what was asked for, as far as it is known before a file is read: versions, options,

@@ -12,8 +12,8 @@
 static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
 {
     g_autoptr(GPtrArray) names = g_ptr_array_new();
-    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
-        g_ptr_array_add(names, fl_drawing_region(plan->drawing, r)->name);
+    for (int r = 0; r < fl_drawing_regions(plan->shapes.drawing); r++)
+        g_ptr_array_add(names, fl_drawing_region(plan->shapes.drawing, r)->name);
     g_ptr_array_add(names, NULL);
     g_autofree char *list = g_strjoinv(", ", (char **)names->pdata);
     g_autofree char *hint = fl_did_you_mean(name, (const char *const *)names->pdata);
@@ -28,8 +28,8 @@ static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
 static bool has_region(const FlPlan *plan, const char *name)
 {
     bool found = false;
-    for (int r = 0; !found && r < fl_drawing_regions(plan->drawing); r++)
-        found = g_str_equal(fl_drawing_region(plan->drawing, r)->name, name);
+    for (int r = 0; !found && r < fl_drawing_regions(plan->shapes.drawing); r++)
+        found = g_str_equal(fl_drawing_region(plan->shapes.drawing, r)->name, name);
     return found;
 }
 
@@ -115,18 +115,19 @@ bool fl_plan_region_settings(const FlConfig *config, int rule, const char *regio
 /* Splits the region that was planned last into a painted region for each of its keyed styles. */
 static bool add_styles(FlPlan *plan, int region, GError **error)
 {
-    const FlRegion *r = fl_drawing_region(plan->drawing, region);
+    FlShapes *shapes = &plan->shapes;
+    const FlRegion *r = fl_drawing_region(shapes->drawing, region);
     const FlKeys *keys = fl_option_keys(fl_option_find(FL_SCOPE_REGION, "style"),
-                                        &plan->painted[plan->n_painted - 1].settings);
+                                        &shapes->painted[shapes->n_painted - 1].settings);
     const int n = keys ? (int)keys->key->len : 0;
-    const int room = plan->n_painted + fl_drawing_regions(plan->drawing) + n;
+    const int room = shapes->n_painted + fl_drawing_regions(shapes->drawing) + n;
     if (n == 0)
         return true;
-    plan->painted = g_renew(FlRegionPlan, plan->painted, room);
-    memset(plan->painted + plan->n_painted, 0,
-           (size_t)(room - plan->n_painted) * sizeof *plan->painted);
+    shapes->painted = g_renew(FlRegionPlan, shapes->painted, room);
+    memset(shapes->painted + shapes->n_painted, 0,
+           (size_t)(room - shapes->n_painted) * sizeof *shapes->painted);
     for (int k = 0; k < n; k++) {
-        FlRegionPlan *painted = &plan->painted[plan->n_painted - 1];
+        FlRegionPlan *painted = &shapes->painted[shapes->n_painted - 1];
         if (!choose_key(plan, painted, k, error))
             return false;
         if (k + 1 == n)
@@ -137,7 +138,7 @@ static bool add_styles(FlPlan *plan, int region, GError **error)
                                      &painted->settings, error))
             return false;
         painted->region = region, painted->name = r->name;
-        plan->n_painted++;
+        shapes->n_painted++;
     }
     return true;
 }
@@ -145,8 +146,9 @@ static bool add_styles(FlPlan *plan, int region, GError **error)
 /* The settings of a region, and whether it is painted. */
 static bool plan_region(FlPlan *plan, int region, GError **error)
 {
-    const FlRegion *r = fl_drawing_region(plan->drawing, region);
-    FlRegionPlan *chosen = &plan->painted[plan->n_painted];
+    FlShapes *shapes = &plan->shapes;
+    const FlRegion *r = fl_drawing_region(shapes->drawing, region);
+    FlRegionPlan *chosen = &shapes->painted[shapes->n_painted];
     FlRegionSettings *settings = &chosen->settings;
     const bool left_out = is_left_out(plan, r->name);
     const int rule = fl_config_rule(plan->config, r->rule, r->name);
@@ -154,17 +156,17 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
         return false;
     const bool painted = r->paintable && settings->passthrough != FL_PASSTHROUGH_YES;
     plan->half &= !painted || settings->params.half_size;
-    plan->edge_limits[region] = edge_limit_of(&plan->options, settings, painted);
+    shapes->edge_limits[region] = edge_limit_of(&plan->options, settings, painted);
     if (!painted)
-        plan->hands[region] = (FlRegionHand){settings->line, settings->line_boil};
-    plan->painted_of[region] = left_out ? FL_LEFT_OUT : FL_DRAWN_AS_IT_IS;
+        shapes->hands[region] = (FlRegionHand){settings->line, settings->line_boil};
+    shapes->painted_of[region] = left_out ? FL_LEFT_OUT : FL_DRAWN_AS_IT_IS;
     if (!painted || left_out) {
         fl_region_settings_clear(settings);
         return true;
     }
     chosen->region = region;
     chosen->name = r->name;
-    plan->painted_of[region] = plan->n_painted++; // from here on, fl_plan_free() clears it
+    shapes->painted_of[region] = shapes->n_painted++; // from here on, fl_plan_free() clears it
     if (!check_wet_with(plan, settings, error))
         return false;
     if (settings->style)
@@ -178,27 +180,29 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
  * composed together. */
 static bool plan_regions(FlPlan *plan, GError **error)
 {
-    const int n = fl_drawing_regions(plan->drawing);
-    plan->painted = g_new0(FlRegionPlan, MAX(n, 1));
-    plan->painted_of = g_new0(int, MAX(n, 1));
-    plan->edge_limits = g_new0(FlEdge, MAX(n, 1));
-    plan->hands = g_new0(FlRegionHand, MAX(n, 1));
+    FlShapes *shapes = &plan->shapes;
+    const int n = fl_drawing_regions(shapes->drawing);
+    shapes->painted = g_new0(FlRegionPlan, MAX(n, 1));
+    shapes->painted_of = g_new0(int, MAX(n, 1));
+    shapes->edge_limits = g_new0(FlEdge, MAX(n, 1));
+    shapes->hands = g_new0(FlRegionHand, MAX(n, 1));
     plan->half = true;
     for (int r = 0; r < n; r++)
         if (!plan_region(plan, r, error))
             return false;
-    plan->hold_of = g_new0(int, MAX(n, 1));
+    shapes->hold_of = g_new0(int, MAX(n, 1));
     for (int r = 0; r < n; r++)
-        plan->hold_of[r] = plan->painted_of[r] >= 0
-                               ? plan->painted[plan->painted_of[r]].settings.hold
-                               : plan->hold;
-    plan->half &= plan->n_painted > 0;
-    plan->by_page = plan->n_painted == 0;
-    for (int p = 0; p < plan->n_painted; p++)
-        plan->by_page |= plan->painted[p].settings.params.style_by_page;
-    for (int p = 0; p < plan->n_painted; p++)
-        plan->painted[p].settings.params.half_size = plan->half;
-    return fl_limit_check(FL_LIMIT_REGIONS, plan->n_painted, fl_drawing_name(plan->drawing), error);
+        shapes->hold_of[r] = shapes->painted_of[r] >= 0
+                                 ? shapes->painted[shapes->painted_of[r]].settings.hold
+                                 : shapes->hold;
+    plan->half &= shapes->n_painted > 0;
+    plan->by_page = shapes->n_painted == 0;
+    for (int p = 0; p < shapes->n_painted; p++)
+        plan->by_page |= shapes->painted[p].settings.params.style_by_page;
+    for (int p = 0; p < shapes->n_painted; p++)
+        shapes->painted[p].settings.params.half_size = plan->half;
+    return fl_limit_check(FL_LIMIT_REGIONS, shapes->n_painted, fl_drawing_name(shapes->drawing),
+                          error);
 }
 
 /* Layers and paint are PNG files, whatever the frames are. */
@@ -214,11 +218,11 @@ static bool check_regions_file(const FlPlan *plan, const char *pattern, GError *
     if (brace && strchr(brace, '}') && !strstr(pattern, "{region}"))
         return fl_fail(error, FL_ERROR_USAGE, "%s: “%.*s” is not understood; expected %s", pattern,
                        (int)(strchr(brace, '}') + 1 - brace), brace, "{region}");
-    if (!pattern || plan->n_painted < 2 || strstr(pattern, "{region}"))
+    if (!pattern || plan->shapes.n_painted < 2 || strstr(pattern, "{region}"))
         return true;
     return fl_fail(error, FL_ERROR_USAGE,
                    "%s: one file for %d regions; expected {region} in the name", pattern,
-                   plan->n_painted);
+                   plan->shapes.n_painted);
 }
 
 bool fl_plan_find_regions(FlPlan *plan, GError **error)

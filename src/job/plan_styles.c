@@ -7,45 +7,33 @@
 #include <math.h>
 #include <string.h>
 
-/* A warning about a style; false with an error under strict. */
-G_GNUC_PRINTF(3, 4)
-static bool warn(const FlPlan *plan, GError **error, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    g_autofree char *line = g_strdup_vprintf(format, arguments);
-    va_end(arguments);
-    if (plan->options.strict)
-        g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s (a warning under ‘strict’)", line);
-    else
-        fl_tell(plan->options.warning, plan->options.data, "%s", line);
-    return !plan->options.strict;
-}
-
 /* Warns about a style, once, for the first of its regions. */
 static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GError **error)
 {
     enum { MUCH_BEYOND = 10 };  // percent
     const float coarse = 1.25f; // below it enlarged pictures do not look soft
     const FlStyleInstance *style = painted->style;
-    for (const FlRegionPlan *p = plan->painted; p < painted; p++)
+    for (const FlRegionPlan *p = plan->shapes.painted; p < painted; p++)
         if (p->style == style)
             return true;
     if (painted->engine->plays && style->exemplar->level[0].n_frames == 1 &&
-        !warn(plan, error, "%s: one frame is used: its paint does not flow", style->path))
+        !fl_warn(&plan->caller, error, FL_ERROR_STYLE,
+                 "%s: one frame is used: its paint does not flow", style->path))
         return false;
     if (painted->engine->plays && style->enlarged > coarse &&
         painted->settings.params.style_by_page &&
-        !warn(plan, error,
-              "%s: its pictures are enlarged %.2g times and look soft; a page as large as this one "
-              "wants a larger recording, with a scale below 1 in its style.ini",
-              style->path, style->enlarged))
+        !fl_warn(
+            &plan->caller, error, FL_ERROR_STYLE,
+            "%s: its pictures are enlarged %.2g times and look soft; a page as large as this one "
+            "wants a larger recording, with a scale below 1 in its style.ini",
+            style->path, style->enlarged))
         return false;
     return style->ink->beyond < MUCH_BEYOND || painted->settings.tint != FL_TINT_FILL ||
-           warn(plan, error,
-                "%s: %d %% of the paint is lighter than the paper where most is darker (or the "
-                "reverse) and will show as bare paper; use ‘tint’ keep for the recording's colours",
-                style->path, style->ink->beyond);
+           fl_warn(
+               &plan->caller, error, FL_ERROR_STYLE,
+               "%s: %d %% of the paint is lighter than the paper where most is darker (or the "
+               "reverse) and will show as bare paper; use ‘tint’ keep for the recording's colours",
+               style->path, style->ink->beyond);
 }
 
 /* The deepest pixel of a region, were it a disc: no shape of that area has a deeper one. */
@@ -58,9 +46,10 @@ static double deepest(const FlRegionPlan *painted)
  * are in pixels: a larger page has room for an interior. */
 static bool warn_of_borders(const FlPlan *plan, GError **error)
 {
+    const FlShapes *shapes = &plan->shapes;
     const FlRegionPlan *largest = NULL;
     int n = 0;
-    for (const FlRegionPlan *p = plan->painted; p < plan->painted + plan->n_painted; p++) {
+    for (const FlRegionPlan *p = shapes->painted; p < shapes->painted + shapes->n_painted; p++) {
         const FlParams *params = &p->settings.params;
         if (params->style_by_page || params->border <= deepest(p))
             continue;
@@ -71,19 +60,19 @@ static bool warn_of_borders(const FlPlan *plan, GError **error)
     if (!largest || !(largest->area_px > 0))
         return true;
     const double border = (double)largest->settings.params.border;
-    return warn(plan, error,
-                "%d of %d regions are narrower than the border of their preset; the largest, “%s”, "
-                "has an interior from a width of %.0f px on, or with a ‘border’ below %.0f px",
-                n, plan->n_painted, largest->name,
-                ceil(fl_drawing_width(plan->drawing) * border / deepest(largest)),
-                ceil(deepest(largest)));
+    return fl_warn(
+        &plan->caller, error, FL_ERROR_STYLE,
+        "%d of %d regions are narrower than the border of their preset; the largest, “%s”, "
+        "has an interior from a width of %.0f px on, or with a ‘border’ below %.0f px",
+        n, shapes->n_painted, largest->name, ceil(shapes->width * border / deepest(largest)),
+        ceil(deepest(largest)));
 }
 
 /* Px of the drawing as it is painted per px of a region's sizes. */
 static float texture_px(const FlPlan *plan, const FlParams *params)
 {
     if (params->style_by_page)
-        return fl_page_scale(fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing));
+        return fl_page_scale(plan->shapes.width, plan->shapes.height);
     return plan->half ? .5f : 1;
 }
 
@@ -139,7 +128,7 @@ bool fl_plan_choose_fluid(FlRegionPlan *painted, bool flow, GError **error)
 
 static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
 {
-    const FlRegion *r = fl_drawing_region(plan->drawing, painted->region);
+    const FlRegion *r = fl_drawing_region(plan->shapes.drawing, painted->region);
     painted->area_px = r->area_px;
     painted->flow_files = plan->options.flow;
     painted->paint_files = plan->options.merge ? plan->options.paint : NULL;
@@ -164,8 +153,8 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
         !check_export(plan, painted, error) || !warn_of_style(plan, painted, error))
         return false;
     if (plan->options.verbose)
-        fl_tell(plan->options.note, plan->options.data, "region %s: style %s, engine %s", r->name,
-                painted->style->path, painted->engine->name);
+        fl_note(&plan->caller, "region %s: style %s, engine %s", r->name, painted->style->path,
+                painted->engine->name);
     return true;
 }
 
@@ -181,44 +170,36 @@ static const char *older_word(const FlRegionSettings *settings)
 /* Names an older word once. */
 static void note_older_word(const FlPlan *plan)
 {
-    for (int p = 0; p < plan->n_painted; p++) {
-        const char *word = older_word(&plan->painted[p].settings);
+    const FlShapes *shapes = &plan->shapes;
+    for (int p = 0; p < shapes->n_painted; p++) {
+        const char *word = older_word(&shapes->painted[p].settings);
         if (!word)
             continue;
-        fl_tell(plan->options.note, plan->options.data,
-                "region %s: %s; the older word goes with the next release", plan->painted[p].name,
-                word);
+        fl_note(&plan->caller, "region %s: %s; the older word goes with the next release",
+                shapes->painted[p].name, word);
         return;
     }
 }
 
-double fl_plan_share_of_page(const FlPlan *plan, int region)
-{
-    const FlRegion *r = fl_drawing_region(plan->drawing, region);
-    const double page = (double)fl_drawing_width(plan->drawing) * fl_drawing_height(plan->drawing);
-    const double px = plan->half ? r->area_px / 4 : r->area_px;
-    return px * r->n_present / MAX(fl_drawing_frames(plan->drawing), 1) / page;
-}
-
 bool fl_plan_choose_styles(FlPlan *plan, GError **error)
 {
-    const int n_regions = fl_drawing_regions(plan->drawing);
-    g_free(plan->ground);
-    plan->ground = g_new0(bool, MAX(n_regions, 1));
+    FlShapes *shapes = &plan->shapes;
+    const int n_regions = fl_drawing_regions(shapes->drawing);
+    g_free(shapes->ground);
+    shapes->ground = g_new0(bool, MAX(n_regions, 1));
     for (int r = 0; r < n_regions; r++)
-        plan->ground[r] = fl_plan_share_of_page(plan, r) > FL_GROUND_SHARE;
-    plan->surround =
-        fl_surround_new(n_regions, fl_drawing_frames(plan->drawing),
-                        fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing), error);
-    plan->masks = plan->surround ? fl_surround_masks(plan->surround) : NULL;
-    for (int p = 0; plan->surround && p < plan->n_painted; p++)
-        if (!choose_style(plan, &plan->painted[p], error))
+        shapes->ground[r] = fl_shapes_share_of_page(&plan->shapes, r) > FL_GROUND_SHARE;
+    shapes->surround =
+        fl_surround_new(n_regions, shapes->n_frames, shapes->width, shapes->height, error);
+    shapes->masks = shapes->surround ? fl_surround_masks(shapes->surround) : NULL;
+    for (int p = 0; shapes->surround && p < shapes->n_painted; p++)
+        if (!choose_style(plan, &shapes->painted[p], error))
             return false;
     if (!warn_of_borders(plan, error))
         return false;
     note_older_word(plan);
     memset(plan->paper, 255, sizeof plan->paper);
-    if (plan->n_painted > 0 && plan->surround)
-        memcpy(plan->paper, plan->painted[0].style->paper, sizeof plan->paper);
-    return plan->surround != NULL;
+    if (shapes->n_painted > 0 && shapes->surround)
+        memcpy(plan->paper, shapes->painted[0].style->paper, sizeof plan->paper);
+    return shapes->surround != NULL;
 }

@@ -1,7 +1,8 @@
-/* One region: its shapes through time, and how they are painted. */
+/* The regions of a film: their shapes through time, and how each is painted. */
 #ifndef FLUIDY_JOB_REGION_PLAN_H
 #define FLUIDY_JOB_REGION_PLAN_H
 
+#include "base/error.h"
 #include "base/rect.h"
 #include "cover/surround.h"
 #include "drawing/drawing.h"
@@ -48,13 +49,29 @@ static inline bool fl_region_lives(const FlRegionPlan *region, const FlDrawing *
     return lives;
 }
 
-/** The shapes that are painted: a film's, or those that the library's caller gives. Borrowed. */
+/** The shapes of a film, and how each region is painted; or masks alone, which the library's caller
+ * gives: they have no drawing, no motion of their own and no list of regions. */
 typedef struct FlShapes {
     int n_frames, width, height; // of the drawing as it is painted, px
+    int page_width, page_height; // of the frames; drafts are enlarged to it
+    float paper_px;              // px of the drawing per px of the sheet of paper
     uint64_t seed;
-    const FlMaskStore *masks;
-    const FlSurround *surround; // NULL: the picture has no other shapes
-    const FlDrawing *drawing;   // NULL: masks alone, which have no motion of their own
+    bool loop; // the end leads into the beginning
+    int hold;  // the drawing changes on every hold-th frame
+    FlDrawing *drawing;
+    FlSurround *surround;     // NULL: the picture has no other shapes
+    const FlMaskStore *masks; // of the surround
+    bool rasterised;          // the masks are there
+    int n_painted;
+    FlRegionPlan *painted;
+    int *painted_of;     // by region: index into painted, FL_DRAWN_AS_IT_IS or FL_LEFT_OUT
+    int *hold_of;        // by region: frames; `hold` where it is not painted
+    FlRegionHand *hands; // by region: what draws it where it is not painted
+    FlEdge *edge_limits; // by region
+    bool *ground;        // by region: it is the ground on which the others, figures, move
+    bool *seen;          // by region: it is not painted, or something of it shows; NULL: not known
+    bool frames_alone;   // paint is used for frames only, so that hidden regions need none: layers,
+                         // which can be moved apart, show them
     /**
      * The flow into a frame from the one before, 2 * width * height floats, interleaved; values
      * that are not known become `unknown`. Any thread. NULL: flow comes from the masks.
@@ -64,5 +81,31 @@ typedef struct FlShapes {
     void *data;
     FlStop stop; // of a picture within its making
 } FlShapes;
+
+/** Frames after which no mark on wet paper is left: so many before it a frame depends on. */
+#define FL_WET_FRAMES 36
+
+/** The share of the page that a region has on average of the film's frames. */
+double fl_shapes_share_of_page(const FlShapes *shapes, int region);
+
+#define FL_GROUND_SHARE 0.4 // of the page: a larger region is ground
+
+/** True if frames are so large that pictures wait packed and free memory returns to the system
+ * after each stage. On small pages, faulting it in again would take a tenth of a draft. */
+bool fl_shapes_are_large(const FlShapes *shapes);
+
+/** The memory that painting takes at least, whatever the regions and styles. */
+double fl_shapes_least_bytes(const FlShapes *shapes);
+
+/** True if other regions hide this one in every frame, and its paint is used for frames only. Known
+ * after fl_shapes_rasterise() or fl_shapes_find_hidden(), and in a merge. */
+bool fl_shapes_hide(const FlShapes *shapes, int region);
+
+/** Rasterises the masks of the painted regions in every frame into shapes->masks, and tells the
+ * caller. */
+bool fl_shapes_rasterise(FlShapes *shapes, const FlCaller *caller, GError **error);
+
+/** Looks which regions are hidden, without masks: it draws as many frames as show all regions. */
+bool fl_shapes_find_hidden(FlShapes *shapes, const FlCaller *caller, GError **error);
 
 #endif

@@ -91,7 +91,7 @@ static bool refuse_frame(const FlPlan *plan, const char *file, const char *but, 
 static bool is_finished(const FlResume *resume, const FlPlan *plan, int frame,
                         const GPtrArray *files, GError **error)
 {
-    const int number = fl_drawing_number(plan->drawing, frame);
+    const int number = fl_drawing_number(plan->shapes.drawing, frame);
     const FlDigest made_from = fl_mark_of_frame(resume->made_from, number);
     for (guint k = 0; k < files->len; k++) {
         const char *file = files->pdata[k];
@@ -131,17 +131,17 @@ static bool check_files(const FlResume *resume, const FlPlan *plan, GError **err
     return true;
 }
 
-static void note_resume(const FlResume *resume, const FlPlan *plan)
+static bool note_resume(const FlResume *resume, const FlPlan *plan, GError **error)
 {
     const FlRenderOptions *o = &plan->options;
     const int n = resume->first - plan->first;
-    fl_tell(o->note, o->data, "resuming an earlier run, which painted %d of %d frames", n,
+    fl_note(&plan->caller, "resuming an earlier run, which painted %d of %d frames", n,
             plan->end - plan->first);
-    if (n > 0 && (o->report || o->stats))
-        fl_tell(o->warning, o->data,
-                "report and statistics lack the %d frames that an earlier run has painted; use "
-                "‘overwrite’ to paint them again",
-                n);
+    return n == 0 || !(o->report || o->stats) ||
+           fl_warn(&plan->caller, error, FL_ERROR_INPUT,
+                   "report and statistics lack the %d frames that an earlier run has painted; use "
+                   "‘overwrite’ to paint them again",
+                   n);
 }
 
 bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GError **error)
@@ -195,9 +195,7 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
                         : CLAMP(resume->record->done, plan->first, plan->end);
     if (!check_files(resume, plan, error))
         return false;
-    if (resume->found)
-        note_resume(resume, plan);
-    return true;
+    return !resume->found || note_resume(resume, plan, error);
 }
 
 /* ---- while it paints ------------------------------------------------------------------------- */
@@ -236,7 +234,7 @@ bool fl_resume_start(FlResume *resume, const FlPlan *plan, GError **error)
 /* Checks that a frame's drawing is as it was when the render began. */
 static bool check_drawing(const FlPlan *plan, int frame, GError **error)
 {
-    const char *path = fl_drawing_file(plan->drawing, frame);
+    const char *path = fl_drawing_file(plan->shapes.drawing, frame);
     const FlDigest before = fl_inputs_digest(plan->inputs, path), now = fl_file_digest(path);
     if (fl_digest_is_same(before, now))
         return true;
@@ -428,8 +426,8 @@ static void complete_record(FlRecord *record, const FlPlan *plan)
         const char *path = fl_inputs_path(plan->inputs, k);
         fl_facts_add_digest(record->inputs, path, fl_inputs_digest(plan->inputs, path));
     }
-    for (int p = 0; p < plan->n_painted; p++) {
-        const FlRegionPlan *region = &plan->painted[p];
+    for (int p = 0; p < plan->shapes.n_painted; p++) {
+        const FlRegionPlan *region = &plan->shapes.painted[p];
         fl_facts_add(record->found, region->settings.style, region->style->path);
         if (region->tile)
             fl_facts_add(record->found, region->settings.tile, region->tile->path);
@@ -473,7 +471,7 @@ static void verify_file(Verify *verify, const char *file, FlDigest made_from)
     }
     verify->n++, verify->n_wrong += fault != NULL;
     if (fault)
-        fl_tell(verify->plan->options.note, verify->plan->options.data, "%s: %s", file, fault);
+        fl_note(&verify->plan->caller, "%s: %s", file, fault);
 }
 
 /* Verifies frames by their names, since no drawing was read. */
@@ -495,7 +493,7 @@ static bool verify_all_files(Verify *verify, FlDigest made_from, GError **error)
 {
     const FlPlan *plan = verify->plan;
     for (int f = plan->first; f < plan->end; f++) {
-        const int number = fl_drawing_number(plan->drawing, f);
+        const int number = fl_drawing_number(plan->shapes.drawing, f);
         g_autoptr(GPtrArray) files = fl_frame_files(plan, f, error);
         for (guint k = 0; files && k < files->len; k++)
             verify_file(verify, files->pdata[k], fl_mark_of_frame(made_from, number));
@@ -513,13 +511,13 @@ static void note_cause(const FlPlan *plan, const FlFacts *facts)
     g_autoptr(FlRecord) record = bytes ? fl_record_parse(bytes) : NULL;
     g_autofree char *cause = record ? fl_facts_difference(record->facts, facts) : NULL;
     if (cause)
-        fl_tell(plan->options.note, plan->options.data, "since the last render, %s", cause);
+        fl_note(&plan->caller, "since the last render, %s", cause);
 }
 
 bool fl_resume_verify(const FlPlan *plan, GError **error)
 {
     Verify verify = {.plan = plan};
-    g_autoptr(FlFacts) facts = plan->drawing ? fl_plan_facts(plan) : NULL;
+    g_autoptr(FlFacts) facts = plan->shapes.drawing ? fl_plan_facts(plan) : NULL;
     const FlDigest made_from = facts ? fl_facts_digest(facts) : plan->made_from;
     if (!(facts ? verify_all_files(&verify, made_from, error) : verify_frames(&verify, error)))
         return false;
@@ -531,7 +529,6 @@ bool fl_resume_verify(const FlPlan *plan, GError **error)
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
                     "%d of %d files are not as they would be made now", verify.n_wrong, verify.n);
     else
-        fl_tell(plan->options.note, plan->options.data,
-                "all %d files are as they would be made now", verify.n);
+        fl_note(&plan->caller, "all %d files are as they would be made now", verify.n);
     return verify.n_wrong == 0;
 }

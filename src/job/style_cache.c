@@ -15,7 +15,8 @@
 #define MOST_UNUSED 24                  // styles; a page shows samples of all
 
 struct FlStyleCache {
-    const FlRenderOptions *options;
+    FlCaller caller;
+    bool makes, exact;    // see fl_style_cache_new()
     GPtrArray *instances; // of FlStyleInstance
 };
 
@@ -29,12 +30,17 @@ static void style_instance_free(FlStyleInstance *instance)
 }
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyleInstance, style_instance_free)
 
-FlStyleCache *fl_style_cache_new(const FlRenderOptions *options)
+FlStyleCache *fl_style_cache_new(bool makes, bool exact)
 {
     FlStyleCache *cache = g_new0(FlStyleCache, 1);
-    cache->options = options;
+    cache->makes = makes, cache->exact = exact;
     cache->instances = g_ptr_array_new_with_free_func((GDestroyNotify)style_instance_free);
     return cache;
+}
+
+void fl_style_cache_set_caller(FlStyleCache *cache, const FlCaller *caller)
+{
+    cache->caller = *caller;
 }
 
 void fl_style_cache_free(FlStyleCache *cache)
@@ -94,8 +100,8 @@ static int window_of(const FlParams *params, const FlStyle *style)
 static bool enlarges(const FlStyleCache *cache, const FlRegionSettings *settings, const char *path)
 {
     const FlParams *params = &settings->params;
-    return params->half_field && fl_knows_depth(params) && !settings->tile &&
-           !cache->options->ebsynth && fl_engine_choose(settings->engine, path)->enlarges;
+    return params->half_field && fl_knows_depth(params) && !settings->tile && !cache->exact &&
+           fl_engine_choose(settings->engine, path)->enlarges;
 }
 
 static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
@@ -106,7 +112,7 @@ static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
     const bool lazy = settings->engine == FL_ENGINE_LAZYFLUIDS && params->style_by_page;
     g_autoptr(FlStyle) whole =
         fl_style_load_for(path, params->style_scale, texture_px, lazy ? LEAST_STILL : 0,
-                          cache->options, &factor, error);
+                          cache->makes, cache->caller, &factor, error);
     const FlStyleUse use = {params->style_start, params->style_frames, params->style_step, factor,
                             settings->reverse};
     g_autoptr(FlStyle) style = whole ? fl_style_adapt(whole, &use, error) : NULL;

@@ -2,14 +2,17 @@
 #ifndef FLUIDY_JOB_STYLE_CACHE_H
 #define FLUIDY_JOB_STYLE_CACHE_H
 
+#include "base/error.h"
 #include "compose/painted_region.h"
-#include <fluidy/render.h>
 
 /** Owns its style instances until _free. */
 typedef struct FlStyleCache FlStyleCache;
 
-/** options: borrowed; who is told of styles that are made, see style_size.h. */
-FlStyleCache *fl_style_cache_new(const FlRenderOptions *options);
+/** makes: styles are made larger, see style_size.h; exact: fields have the size of the picture. */
+FlStyleCache *fl_style_cache_new(bool makes, bool exact);
+
+/** Sets the caller, who is told of styles that are made; before, there is none. */
+void fl_style_cache_set_caller(FlStyleCache *cache, const FlCaller *caller);
 void fl_style_cache_free(FlStyleCache *cache); // NULL is fine
 
 /**

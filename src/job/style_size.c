@@ -7,6 +7,7 @@
 #include "style/write_style.h"
 #include "watercolour/simulate.h"
 
+#include <fluidy/render.h>
 #include <glib/gstdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -68,16 +69,10 @@ static bool is_kept(const char *folder)
 
 /* ---- making ---------------------------------------------------------------------------------- */
 
-/* The receiver of a style's progress. */
-typedef struct Teller {
-    const FlRenderOptions *options;
-    gint64 start;
-} Teller;
-
 static bool tell(int frame, int n_frames, void *data)
 {
-    const Teller *teller = data;
-    const double elapsed_s = (double)(g_get_monotonic_time() - teller->start) / G_USEC_PER_SEC;
+    const FlCaller *caller = data;
+    const double elapsed_s = fl_elapsed(caller);
     const FlProgress progress = {.stage = "style",
                                  .region_index = -1,
                                  .frame = frame,
@@ -87,24 +82,20 @@ static bool tell(int frame, int n_frames, void *data)
                                  .elapsed_s = elapsed_s,
                                  .frame_s = frame ? elapsed_s / frame : 0,
                                  .remaining_s = -1};
-    return !teller->options->progress ||
-           teller->options->progress(&progress, teller->options->data);
+    return !caller->progress || caller->progress(&progress, caller->data);
 }
 
-static FlStyle *paint(const FlRecipe *recipe, const char *path, int size,
-                      const FlRenderOptions *options, GError **error)
+static FlStyle *paint(const FlRecipe *recipe, const char *path, int size, FlCaller caller,
+                      GError **error)
 {
-    Teller teller = {options, g_get_monotonic_time()};
-    fl_tell(options->note, options->data,
-            "%s: simulating its paint at %d times the size; it is kept for the next time", path,
-            size);
-    return fl_recipe_paint(recipe, path, size, tell, &teller, error);
+    fl_note(&caller, "%s: simulating its paint at %d times the size; it is kept for the next time",
+            path, size);
+    return fl_recipe_paint(recipe, path, size, tell, &caller, error);
 }
 
 /* Waits for a lock beside the folder; -1: locks are missing here, or it was interrupted. */
-static int wait_for_lock(const char *folder, const FlRenderOptions *options)
+static int wait_for_lock(const char *folder, FlCaller caller)
 {
-    Teller teller = {options, g_get_monotonic_time()};
     g_autofree char *parent = g_path_get_dirname(folder);
     g_autofree char *path = g_strconcat(folder, ".lock", NULL);
     if (g_mkdir_with_parents(parent, 0755) != 0)
@@ -112,7 +103,7 @@ static int wait_for_lock(const char *folder, const FlRenderOptions *options)
     for (;;) {
         g_autoptr(GError) held = NULL;
         const int lock = fl_lock_take(path, folder, &held);
-        if (lock >= 0 || !held || !tell(0, 0, &teller))
+        if (lock >= 0 || !held || !tell(0, 0, &caller))
             return lock;
         g_usleep(WAIT_US);
     }
@@ -129,31 +120,30 @@ static void release_lock(int lock, const char *folder)
 
 /* Paints the style and keeps it if possible. */
 static FlStyle *make(const FlRecipe *recipe, const char *path, int size, const char *folder,
-                     const FlRenderOptions *options, GError **error)
+                     FlCaller caller, GError **error)
 {
-    FlStyle *style = paint(recipe, path, size, options, error);
+    FlStyle *style = paint(recipe, path, size, caller, error);
     g_autoptr(GError) problem = NULL;
     if (style && !fl_style_write(style, folder, true, &problem))
-        fl_tell(options->note, options->data, "%s (the paint is used, but not kept)",
-                problem->message);
+        fl_note(&caller, "%s (the paint is used, but not kept)", problem->message);
     return style;
 }
 
 /* The style of a recipe at a size above 1, from the cache or new. */
 static FlStyle *larger(const FlRecipe *recipe, const char *path, int size, const char *folder,
-                       const FlRenderOptions *options, GError **error)
+                       FlCaller caller, GError **error)
 {
     if (is_kept(folder))
         return fl_style_load(folder, error);
-    const int lock = wait_for_lock(folder, options);
+    const int lock = wait_for_lock(folder, caller);
     FlStyle *style = is_kept(folder) ? fl_style_load(folder, error)
-                                     : make(recipe, path, size, folder, options, error);
+                                     : make(recipe, path, size, folder, caller, error);
     release_lock(lock, folder);
     return style;
 }
 
 FlStyle *fl_style_load_for(const char *folder, float scale, float texture_px, float least_px,
-                           const FlRenderOptions *options, float *factor, GError **error)
+                           bool makes, FlCaller caller, float *factor, GError **error)
 {
     g_autoptr(FlStyle) style = fl_style_load(folder, error);
     if (!style)
@@ -161,7 +151,7 @@ FlStyle *fl_style_load_for(const char *folder, float scale, float texture_px, fl
     const float given = scale > 0 ? scale : style->scale;
     const float least = least_px / (float)MIN(style->width, style->height);
     *factor = MAX(given * texture_px, MIN(given, least));
-    g_autofree char *path = *factor > 1 && !options->dry_run ? recipe_of(style) : NULL;
+    g_autofree char *path = *factor > 1 && makes ? recipe_of(style) : NULL;
     if (!path)
         return g_steal_pointer(&style);
     g_autoptr(FlRecipe) recipe = fl_recipe_load(path, error);
@@ -172,6 +162,7 @@ FlStyle *fl_style_load_for(const char *folder, float scale, float texture_px, fl
     if (size == 1)
         return g_steal_pointer(&style);
     g_clear_pointer(&style, fl_style_free); // it is large
+    caller.start = g_get_monotonic_time();
     *factor /= (float)size;
-    return larger(recipe, path, size, kept, options, error);
+    return larger(recipe, path, size, kept, caller, error);
 }

@@ -2,8 +2,8 @@
 #ifndef FLUIDY_JOB_STYLE_SIZE_H
 #define FLUIDY_JOB_STYLE_SIZE_H
 
+#include "base/error.h"
 #include "style/style_folder.h"
-#include <fluidy/render.h>
 
 /**
  * Reads a style for frames that are scale * texture_px times as large as its pictures; scale 0: the
@@ -12,7 +12,7 @@
  *
  * For a factor above 1, a style with a recipe is simulated at 2 or 4 times its size. The result is
  * kept in the user's cache folder, under a name made of recipe, size and version, and is made once
- * even by two processes. A dry run does not simulate.
+ * even by two processes. makes: false in a dry run, which does not simulate.
  *
  * *factor becomes the factor by which the frames still have to be scaled; it is above 1 only if no
  * larger pictures can be made.
@@ -20,6 +20,6 @@
  * or FL_ERROR_INTERRUPTED set.
  */
 FlStyle *fl_style_load_for(const char *folder, float scale, float texture_px, float least_px,
-                           const FlRenderOptions *options, float *factor, GError **error);
+                           bool makes, FlCaller caller, float *factor, GError **error);
 
 #endif

@@ -60,6 +60,14 @@ void fl_facts_add_versions(FlFacts *facts)
     fl_facts_add_number(facts, "the byte order", G_BYTE_ORDER);
 }
 
+void fl_facts_append(FlFacts *facts, const FlFacts *other)
+{
+    for (guint k = 0; other && k < other->list->len; k++) {
+        const FlFact *fact = &g_array_index(other->list, FlFact, k);
+        fl_facts_add(facts, fact->name, fact->value);
+    }
+}
+
 FlDigest fl_facts_digest(const FlFacts *facts)
 {
     FlDigest digest = {0};

@@ -28,6 +28,9 @@ void fl_facts_add_digest(FlFacts *facts, const char *name, FlDigest digest);
 /** Adds versions of this program, librsvg and cairo, and the byte order. */
 void fl_facts_add_versions(FlFacts *facts);
 
+/** Adds all other facts; NULL: none. */
+void fl_facts_append(FlFacts *facts, const FlFacts *other);
+
 /** The digest of all facts in their order. */
 FlDigest fl_facts_digest(const FlFacts *facts);
 

@@ -206,6 +206,17 @@ bool fl_options_take(const FlRenderOptions *given, FlRenderOptions *known, GErro
     return false;
 }
 
+FlCaller fl_caller_of(const FlRenderOptions *options)
+{
+    return (FlCaller){.progress = options->progress,
+                      .stopped = options->stopped,
+                      .warning = options->warning,
+                      .note = options->note,
+                      .data = options->data,
+                      .start = g_get_monotonic_time(),
+                      .strict = options->strict};
+}
+
 static void *field_of(const FlOption *option, FlRenderOptions *options)
 {
     g_assert(option->scope == FL_SCOPE_RENDER);

@@ -3,6 +3,7 @@
 #ifndef FLUIDY_PARAMS_OPTIONS_H
 #define FLUIDY_PARAMS_OPTIONS_H
 
+#include "base/error.h"
 #include "params/region_settings.h"
 #include <fluidy/render.h>
 #include <stddef.h>
@@ -128,6 +129,9 @@ bool fl_option_set(const FlOption *option, const char *value, const char *folder
 
 /** Copies the options of a caller, whose struct may have fewer or more fields. FL_ERROR_USAGE. */
 bool fl_options_take(const FlRenderOptions *given, FlRenderOptions *known, GError **error);
+
+/** The caller of a render that begins now. */
+FlCaller fl_caller_of(const FlRenderOptions *options);
 
 /** Makes an explicit 0, kept as -1, a 0 again: the option has overridden what it may. */
 void fl_option_drop_marker(const FlOption *option, FlRenderOptions *options);

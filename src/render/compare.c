@@ -44,6 +44,7 @@ static const Kind methods_kind = {"method", "fluidy/{name}_methods.png", true};
 typedef struct Comparison {
     const Kind *kind;
     FlRenderOptions options; // complete
+    FlCaller caller;         // of them
     FlConfig *config;
     FlDrawing *drawing;
     FlContactSheet contact;
@@ -108,16 +109,17 @@ static int n_columns(const Comparison *c)
 static bool comparison_init(Comparison *c, const Kind *kind, const FlRenderOptions *options,
                             int n_rows, GError **error)
 {
-    *c = (Comparison){.kind = kind, .options = *options};
+    *c = (Comparison){.kind = kind, .options = *options, .caller = fl_caller_of(options)};
     if (!c->options.frames && !kind->has_page)
         c->options.frames = "~1";
     if (!(c->config = fl_config_load(options->config, options, error)))
         return false;
     FlRenderOptions complete = c->options;
     fl_config_complete(c->config, &complete);
-    complete.warning = NULL, complete.note = NULL; // the renders repeat them
+    FlCaller silent = fl_caller_of(&complete);
+    silent.warning = NULL, silent.note = NULL; // the renders repeat them
     if (!name_files(c, &complete, error) ||
-        !(c->drawing = fl_drawing_from_options(&complete, c->config, error)) ||
+        !(c->drawing = fl_drawing_from_options(&complete, c->config, &silent, error)) ||
         !fl_guard_pictures(c->drawing, &complete, c->path, error) ||
         (c->page && !fl_guard_pictures(c->drawing, &complete, c->page, error)))
         return false;
@@ -204,7 +206,7 @@ static bool show_frame(void *taker, const FlSinkFrame *frame, int width, int hei
 /* Paints all frames of a row. */
 static bool paint(Comparison *c, const Variant *variant, int row, GError **error)
 {
-    fl_tell(c->options.note, c->options.data, "%s %s", c->kind->noun, variant->name);
+    fl_note(&c->caller, "%s %s", c->kind->noun, variant->name);
     const size_t n = c->options.n_settings;
     const size_t own = (size_t)variant->n;
     g_autofree FlSetting *settings = g_new0(FlSetting, n + own);
@@ -271,7 +273,7 @@ static bool compare(const Kind *kind, const FlRenderOptions *given, const Varian
     if (!fl_contact_sheet_save(&c.contact, c.path, options.overwrite == FL_OVERWRITE_YES, error) ||
         (kind->has_page && !write_page(&c, variants, n, error)))
         return false;
-    fl_tell(options.note, options.data, "%d %s%s: %s", n, kind->noun, n == 1 ? "" : "s", c.path);
+    fl_note(&c.caller, "%d %s%s: %s", n, kind->noun, n == 1 ? "" : "s", c.path);
     return true;
 }
 

@@ -224,7 +224,7 @@ static bool follow_options(FlFilm *film, Take *take, GError **error)
 {
     const size_t memory = (size_t)MIN(fl_limit(FL_LIMIT_MEMORY) / 8, 512) << 20;
     const FlRenderOptions before = take->asked;
-    const FlDrawing *read = take->open ? take->frames.plan->drawing : NULL;
+    const FlDrawing *read = take->open ? take->frames.plan->shapes.drawing : NULL;
     ask(film, take);
     FlPlan *plan =
         fl_plan_follow(take->open ? take->frames.plan : NULL, &take->asked, memory, error);
@@ -238,11 +238,11 @@ static bool follow_options(FlFilm *film, Take *take, GError **error)
         fl_frames_init(&take->frames, plan);
     take->open = true;
     take->frames.small = take == &film->draft;
-    film->stats.n_read += plan->drawing != read;
+    film->stats.n_read += plan->shapes.drawing != read;
     if (fl_frames_check(&take->frames, error) && fl_frames_prepare(&take->frames, error))
         return true;
     FlPainters *painters = &take->frames.painters;
-    if (painters->shapes.masks == plan->masks)
+    if (painters->shapes.masks == plan->shapes.masks)
         fl_painters_forget(painters);
     else {
         take->n_painted += fl_painters_painted(painters);
@@ -259,12 +259,13 @@ static bool settle(FlFilm *film, Take *take, GError **error)
     if (!follow_options(film, take, error))
         return false;
     const FlPlan *plan = take->frames.plan;
+    const FlShapes *shapes = &plan->shapes;
     const double fps = plan->options.fps;
-    film->info = (FlFilmInfo){.n_frames = fl_drawing_frames(plan->drawing),
-                              .width = plan->width,
-                              .height = plan->height,
-                              .n_regions = plan->n_painted,
-                              .name = fl_drawing_name(plan->drawing),
+    film->info = (FlFilmInfo){.n_frames = shapes->n_frames,
+                              .width = shapes->page_width,
+                              .height = shapes->page_height,
+                              .n_regions = shapes->n_painted,
+                              .name = fl_drawing_name(shapes->drawing),
                               .fps = fps > 0 ? fps : 24,
                               .transparent = take->frames.background.none};
     take->changed = false;
@@ -280,7 +281,7 @@ static bool work_on(FlFilm *film, Take *take, int frame, Work work, GError **err
     if (film->options.threads > 0)
         (void)fl_schedule_set_threads(film->options.threads);
     bool done = settle(film, take, error);
-    const int n = done ? fl_drawing_frames(take->frames.plan->drawing) : 0;
+    const int n = done ? fl_drawing_frames(take->frames.plan->shapes.drawing) : 0;
     if (done && (frame < 0 || frame >= n)) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "frame %d: expected 0 to %d", frame, n - 1);
         done = false;
@@ -294,7 +295,7 @@ static const FlFilmFrame *give(FlFilm *film, const FlPlan *plan, int frame, int 
                                const uint8_t *rgba)
 {
     film->frame =
-        (FlFilmFrame){frame, fl_drawing_number(plan->drawing, frame), width, height, rgba};
+        (FlFilmFrame){frame, fl_drawing_number(plan->shapes.drawing, frame), width, height, rgba};
     return &film->frame;
 }
 
@@ -308,9 +309,11 @@ static bool make_frame(FlFilm *film, Take *take, int frame, GError **error)
         return false;
     film->stats.n_composed++;
     const FlPlan *plan = frames->plan;
+    const FlShapes *shapes = &plan->shapes;
     const bool half = plan->half && frames->small;
-    (void)give(film, plan, frame, half ? fl_drawing_width(plan->drawing) : plan->width,
-               half ? fl_drawing_height(plan->drawing) : plan->height, film->composite.rgba);
+    (void)give(film, plan, frame, half ? fl_drawing_width(shapes->drawing) : shapes->page_width,
+               half ? fl_drawing_height(shapes->drawing) : shapes->page_height,
+               film->composite.rgba);
     return true;
 }
 
@@ -327,7 +330,7 @@ const FlFilmFrame *fl_film_frame(FlFilm *film, int frame, GError **error)
 int fl_film_number(const FlFilm *film, int frame)
 {
     const Take *take = film->draft.open ? &film->draft : &film->full;
-    return fl_drawing_number(take->frames.plan->drawing, frame);
+    return fl_drawing_number(take->frames.plan->shapes.drawing, frame);
 }
 
 /* ---- drafts ---------------------------------------------------------------------------------- */
@@ -351,7 +354,7 @@ const FlFilmFrame *fl_film_draft(FlFilm *film, int frame, GError **error)
 /* The drawing in a frame into film->drawing, in its colours or in those of the map. */
 static bool draw_shapes(FlFilm *film, Take *take, int frame, bool map, GError **error)
 {
-    const FlDrawing *drawing = take->frames.plan->drawing;
+    const FlDrawing *drawing = take->frames.plan->shapes.drawing;
     const int width = fl_drawing_width(drawing), height = fl_drawing_height(drawing);
     g_autoptr(FlDrawList) draws =
         fl_drawing_draw_list(drawing, fl_drawing_shown(drawing, frame), error);
@@ -392,18 +395,18 @@ const FlFilmRegion *fl_film_regions(FlFilm *film, int *n, GError **error)
 {
     if (!work_on(film, &film->draft, 0, NULL, error))
         return NULL;
-    const FlPlan *plan = film->draft.frames.plan;
+    const FlShapes *shapes = &film->draft.frames.plan->shapes;
     g_array_set_size(film->regions, 0);
-    *n = fl_drawing_regions(plan->drawing);
+    *n = fl_drawing_regions(shapes->drawing);
     for (int r = 0; r < *n; r++) {
-        const FlRegion *region = fl_drawing_region(plan->drawing, r);
-        const int p = plan->painted_of[r];
+        const FlRegion *region = fl_drawing_region(shapes->drawing, r);
+        const int p = shapes->painted_of[r];
         FlFilmRegion told = {.name = region->name,
                              .layer = region->label,
                              .paint = region->paint,
-                             .style = p >= 0 ? plan->painted[p].settings.style : NULL,
+                             .style = p >= 0 ? shapes->painted[p].settings.style : NULL,
                              .left_out = p == FL_LEFT_OUT};
-        fl_region_colour(plan->drawing, r, told.colour);
+        fl_region_colour(shapes->drawing, r, told.colour);
         g_array_append_val(film->regions, told);
     }
     return (const FlFilmRegion *)(const void *)film->regions->data;

@@ -13,7 +13,7 @@
 
 static char *mark_of(const FlFrameWriter *writer, int frame)
 {
-    const int number = fl_drawing_number(writer->plan->drawing, frame);
+    const int number = fl_drawing_number(writer->plan->shapes.drawing, frame);
     return fl_mark_text(fl_mark_of_frame(writer->resume->made_from, number));
 }
 
@@ -22,9 +22,10 @@ static bool write_layer(const FlFrameWriter *writer, FlPng png, const char *name
                         GError **error)
 {
     const FlPlan *plan = writer->plan;
-    const int number = fl_drawing_number(plan->drawing, frame);
+    const FlShapes *shapes = &plan->shapes;
+    const int number = fl_drawing_number(shapes->drawing, frame);
     g_autofree char *mark = mark_of(writer, frame);
-    png.width = plan->width, png.height = plan->height;
+    png.width = shapes->page_width, png.height = shapes->page_height;
     png.mark = mark;
     g_autofree char *path = fl_output_name(plan->options.layers, number, name, error);
     return path && (fl_resume_keeps(writer->resume, path) ||
@@ -55,10 +56,10 @@ bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *c
 {
     const FlRenderOptions *o = &writer->plan->options;
     g_autofree char *mark = mark_of(writer, frame);
-    for (int p = 0; o->paint && !o->merge && p < writer->plan->n_painted; p++) {
-        const FlRegionPlan *region = &writer->plan->painted[p];
+    for (int p = 0; o->paint && !o->merge && p < writer->plan->shapes.n_painted; p++) {
+        const FlRegionPlan *region = &writer->plan->shapes.painted[p];
         g_autofree char *path =
-            fl_paint_file_name(o->paint, writer->plan->drawing, region, frame, error);
+            fl_paint_file_name(o->paint, writer->plan->shapes.drawing, region, frame, error);
         if (!path)
             return false;
         if (frame % region->settings.hold == 0 && !fl_resume_keeps(writer->resume, path) &&
@@ -73,7 +74,7 @@ bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *c
 static int stack_layers(const FlFrameWriter *writer, const FlComposite *composite, int frame,
                         FlSinkLayer *layers)
 {
-    const int width = writer->plan->width, height = writer->plan->height;
+    const int width = writer->plan->shapes.page_width, height = writer->plan->shapes.page_height;
     int n = 0;
     if (composite->ground)
         layers[n++] = (FlSinkLayer){
@@ -103,7 +104,7 @@ bool fl_frame_writer_frame(FlFrameWriter *writer, const FlComposite *composite, 
 {
     g_autofree FlSinkLayer *layers = g_new0(FlSinkLayer, composite->n_layers + 2);
     const int n_layers = stack_layers(writer, composite, frame, layers);
-    const FlSinkFrame out = {.number = fl_drawing_number(writer->plan->drawing, frame),
+    const FlSinkFrame out = {.number = fl_drawing_number(writer->plan->shapes.drawing, frame),
                              .rgba = composite->rgba,
                              .rgba16 = composite->rgba16,
                              .layers = layers,
@@ -123,7 +124,7 @@ bool fl_frame_writer_frame(FlFrameWriter *writer, const FlComposite *composite, 
 static bool copy_finished_frames(FlFrameWriter *writer, GError **error)
 {
     for (int f = 0; writer->movie && f < writer->resume->first; f++) {
-        const int number = fl_drawing_number(writer->plan->drawing, f);
+        const int number = fl_drawing_number(writer->plan->shapes.drawing, f);
         g_autofree char *file = fl_sink_file(&writer->sink->params, number, error);
         g_autoptr(FlPicture) picture = file ? fl_picture_read_png(file, error) : NULL;
         if (!picture)
@@ -152,8 +153,8 @@ bool fl_frame_writer_init(FlFrameWriter *writer, const FlPlan *plan, const FlRes
     FlSinkParams params = {
         .path = plan->output,
         .made_from = plan->format->film ? of_film : resume->made_from,
-        .width = plan->width,
-        .height = plan->height,
+        .width = plan->shapes.page_width,
+        .height = plan->shapes.page_height,
         .fps = plan->options.fps,
         .opaque = opaque,
         .patience = {.stopped = plan->options.stopped, .data = plan->options.data},

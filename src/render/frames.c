@@ -28,8 +28,8 @@ bool fl_frames_tell(const FlFrames *frames, const char *stage, int done, double 
     const int total = plan->end - plan->first, made = MAX(done - plan->first, 0);
     FlProgress progress = {.stage = stage,
                            .region_index = -1,
-                           .n_regions = plan->n_painted,
-                           .frame = fl_drawing_number(plan->drawing, MAX(done - 1, 0)),
+                           .n_regions = plan->shapes.n_painted,
+                           .frame = fl_drawing_number(plan->shapes.drawing, MAX(done - 1, 0)),
                            .done = made,
                            .total = total,
                            .share = (double)made / MAX(total, 1),
@@ -79,8 +79,8 @@ static bool export_picture(const FlPlan *plan, const FlPainter *painter, int fra
         !painter->plan->engine->guide_pairs(painter->paint, &pairs, error))
         return false;
     return fl_ebsynth_frame(plan->options.ebsynth, painted, pairs.style ? &pairs : NULL,
-                            fl_drawing_number(plan->drawing, frame),
-                            rests ? fl_drawing_number(plan->drawing, before) : -1, error);
+                            fl_drawing_number(plan->shapes.drawing, frame),
+                            rests ? fl_drawing_number(plan->shapes.drawing, before) : -1, error);
 }
 
 static bool exports(const FlPlan *plan)
@@ -97,7 +97,7 @@ static bool inspect_picture(const FlFrames *frames, int p, int frame, GError **e
     return fl_report_guides(frames->report, p, &painter->result, frame, fl_painter_guides(painter),
                             error) &&
            (!plan->options.dump || !is_new ||
-            dump_picture(plan, painter, fl_drawing_number(plan->drawing, frame), error)) &&
+            dump_picture(plan, painter, fl_drawing_number(plan->shapes.drawing, frame), error)) &&
            (!exports(plan) || !is_new || export_picture(plan, painter, frame, error));
 }
 
@@ -114,7 +114,7 @@ static bool paint_one(void *data, int p, int frame, GError **error)
     const bool painted = fl_painter_frame(painter, frame, error) &&
                          (!painter->wants_guides || inspect_picture(frames, p, frame, error));
     fl_painter_drop_guides(painter);
-    if (!painted || painter->wants_guides || !fl_plan_is_large(plan))
+    if (!painted || painter->wants_guides || !fl_shapes_are_large(&plan->shapes))
         return painted;
     fl_memory_trim();
     return fl_painted_pack(&painter->result, error);
@@ -146,13 +146,13 @@ static bool draw_shapes(void *data, GError **error)
 {
     FlFrames *frames = data;
     const FlPlan *plan = frames->plan;
-    const FlHand hand = {
-        .of_region = plan->hands,
-        .seed = plan->options.seed,
-        .page = fl_page_scale(fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing)),
-        .tooth = fl_paper_sheet_tooth(frames->sheet, frames->drawn)};
-    g_autoptr(FlDrawList) draws =
-        fl_hold_draw_list(plan->drawing, &hand, plan->hold, plan->hold_of, frames->drawn, error);
+    const FlShapes *shapes = &plan->shapes;
+    const FlHand hand = {.of_region = shapes->hands,
+                         .seed = plan->options.seed,
+                         .page = fl_page_scale(shapes->width, shapes->height),
+                         .tooth = fl_paper_sheet_tooth(frames->sheet, frames->drawn)};
+    g_autoptr(FlDrawList) draws = fl_hold_draw_list(shapes->drawing, &hand, shapes->hold,
+                                                    shapes->hold_of, frames->drawn, error);
     return draws && (frames->draws = fl_draws_pack(draws, error));
 }
 
@@ -166,30 +166,30 @@ static void start_drawing(FlFrames *frames, int frame)
 static FlComposeInput compose_input(const FlFrames *frames, int frame)
 {
     const FlPlan *plan = frames->plan;
-    return (FlComposeInput){.drawing = plan->drawing,
-                            .painted_of = plan->painted_of,
-                            .n_painted = plan->n_painted,
-                            .painted = frames->painters.painted,
-                            .background = &frames->background,
-                            .sheet = frames->sheet,
-                            .tooth = fl_paper_sheet_tooth(frames->sheet, frame),
-                            .directions = {frames->directions,
-                                           (float)fl_drawing_width(plan->drawing),
-                                           (float)fl_drawing_height(plan->drawing)},
-                            .seed = plan->options.seed,
-                            .width = fl_drawing_width(plan->drawing),
-                            .height = fl_drawing_height(plan->drawing),
-                            .paper_px = plan->paper_px,
-                            .layers_apart = plan->options.layers || plan->format->takes_layers,
-                            .linear = plan->options.blend == FL_BLEND_LINEAR,
-                            .gap_px = (float)MAX(plan->options.gap, 0),
-                            .stain = frames->wet ? fl_wet_layer(frames->wet) : NULL,
-                            .laid = frames->wet ? fl_wet_laid(frames->wet) : NULL};
+    const FlShapes *shapes = &plan->shapes;
+    return (FlComposeInput){
+        .drawing = shapes->drawing,
+        .painted_of = shapes->painted_of,
+        .n_painted = shapes->n_painted,
+        .painted = frames->painters.painted,
+        .background = &frames->background,
+        .sheet = frames->sheet,
+        .tooth = fl_paper_sheet_tooth(frames->sheet, frame),
+        .directions = {frames->directions, (float)shapes->width, (float)shapes->height},
+        .seed = plan->options.seed,
+        .width = shapes->width,
+        .height = shapes->height,
+        .paper_px = shapes->paper_px,
+        .layers_apart = plan->options.layers || plan->format->takes_layers,
+        .linear = plan->options.blend == FL_BLEND_LINEAR,
+        .gap_px = (float)MAX(plan->options.gap, 0),
+        .stain = frames->wet ? fl_wet_layer(frames->wet) : NULL,
+        .laid = frames->wet ? fl_wet_laid(frames->wet) : NULL};
 }
 
 static void trim(const FlPlan *plan)
 {
-    if (fl_plan_is_large(plan))
+    if (fl_shapes_are_large(&plan->shapes))
         fl_memory_trim();
 }
 
@@ -200,8 +200,8 @@ static bool paint(FlFrames *frames, int shown, GError **error)
     if (frames->shown == shown)
         return true;
     frames->shown = -1;
-    if (!fl_style_cache_seek(plan->styles, shown, fl_drawing_frames(plan->drawing),
-                             plan->options.loop, error) ||
+    if (!fl_style_cache_seek(plan->styles, shown, plan->shapes.n_frames, plan->options.loop,
+                             error) ||
         !fl_painters_each(&frames->painters, shown, paint_one, frames, error))
         return false;
     frames->shown = shown;
@@ -212,7 +212,7 @@ static bool seek_painters(FlFrames *frames, int shown,
                           int (*seek)(FlPainter *painter, int frame, GError **error),
                           GError **error)
 {
-    const FlPlan *plan = frames->plan;
+    const FlShapes *shapes = &frames->plan->shapes;
     int from = shown;
     for (int p = 0; p < frames->painters.n && from > -2; p++)
         from = MIN(from, seek(frames->painters.painter[p], shown, error));
@@ -220,7 +220,7 @@ static bool seek_painters(FlFrames *frames, int shown,
     for (int k = 0; good && from == -1 && k < FL_LOOP_LONGEST; k++)
         good = fl_painters_each(&frames->painters, k, lead_in_one, frames, error);
     for (int f = MAX(from, 0); good && f < shown; f++)
-        good = (fl_drawing_shown(plan->drawing, f) != f || paint(frames, f, error)) &&
+        good = (fl_drawing_shown(shapes->drawing, f) != f || paint(frames, f, error)) &&
                fl_frames_tell(frames, "paint", f + 1, 0, error);
     return good;
 }
@@ -238,18 +238,31 @@ static bool wet_motion(void *data, int region, int before, int now, FlRect part,
     return true;
 }
 
+static FlWet *new_wet(const FlFrames *frames, const FlShapes *shapes, FlWet *before,
+                      FlMotionSource *motion, GError **error)
+{
+    const FlRenderOptions *o = &frames->plan->options;
+    const uint8_t *paper = frames->background.paper;
+    const FlWetOptions options = {.paper = {paper[0], paper[1], paper[2]},
+                                  .seed = o->paper_seed,
+                                  .stain_time = o->stain_time * (o->fps > 0 ? o->fps : 24) / 24,
+                                  .overrun = o->overrun,
+                                  .camera = o->camera};
+    return fl_wet_new(shapes, &options, before, wet_motion, motion, error);
+}
+
 static bool open_wet(FlFrames *frames, GError **error)
 {
     const FlPlan *plan = frames->plan;
     frames->marked = -1;
     FlMotionSource *motion = frames->painters.motion[1];
     if (!motion && !frames->motion)
-        frames->motion = fl_motion_source_new(plan->drawing, plan->masks, true, error);
+        frames->motion =
+            fl_motion_source_new(plan->shapes.drawing, plan->shapes.masks, true, error);
     motion = motion ? motion : frames->motion;
     if (!motion)
         return false;
-    frames->wet =
-        fl_wet_new(plan, frames->background.paper, frames->wet, wet_motion, motion, error);
+    frames->wet = new_wet(frames, &plan->shapes, frames->wet, motion, error);
     return frames->wet;
 }
 
@@ -258,17 +271,15 @@ static bool open_wet(FlFrames *frames, GError **error)
 static bool know_earlier(FlFrames *frames, GError **error)
 {
     int first;
-    const FlRenderOptions *o = &frames->plan->options;
     g_autoptr(GError) reason = NULL;
     g_autoptr(FlPlan) plan = fl_plan_earlier(frames->plan, &first, &reason);
-    if (!plan || !fl_plan_rasterise(plan, &reason)) {
-        fl_tell(o->note, o->data, "the first frame has clean paper: %s", reason->message);
+    if (!plan || !fl_shapes_rasterise(&plan->shapes, &plan->caller, &reason)) {
+        fl_note(&frames->plan->caller, "the first frame has clean paper: %s", reason->message);
         return true;
     }
     g_autoptr(FlMotionSource) motion =
-        fl_motion_source_new(plan->drawing, plan->masks, true, error);
-    g_autoptr(FlWet) wet =
-        motion ? fl_wet_new(plan, frames->background.paper, NULL, wet_motion, motion, error) : NULL;
+        fl_motion_source_new(plan->shapes.drawing, plan->shapes.masks, true, error);
+    g_autoptr(FlWet) wet = motion ? new_wet(frames, &plan->shapes, NULL, motion, error) : NULL;
     return wet && fl_wet_learn(wet, first, frames->wet, error) && fl_wet_frame(wet, first, error) &&
            fl_wet_follow(frames->wet, wet, error);
 }
@@ -280,7 +291,8 @@ static bool compose(FlFrames *frames, int frame, int next, bool marks, FlComposi
 {
     const gint64 start = g_get_monotonic_time();
     const FlPlan *plan = frames->plan;
-    const int shown = fl_drawing_shown(plan->drawing, frame);
+    const FlShapes *shapes = &plan->shapes;
+    const int shown = fl_drawing_shown(shapes->drawing, frame);
     const bool composed = !fl_plan_is_of_paint(plan);
     if (composed && frames->drawn != shown)
         start_drawing(frames, shown);
@@ -292,13 +304,13 @@ static bool compose(FlFrames *frames, int frame, int next, bool marks, FlComposi
         return false;
     if (!composed)
         return true;
-    FlDrawList *draws = fl_drawing_unpack_draws(plan->drawing, frames->draws, error);
+    FlDrawList *draws = fl_drawing_unpack_draws(shapes->drawing, frames->draws, error);
     g_clear_pointer(&frames->draws, g_bytes_unref);
     frames->drawn = -1;
     if (!draws)
         return false;
     if (next >= 0 && frames->beside)
-        start_drawing(frames, fl_drawing_shown(plan->drawing, next));
+        start_drawing(frames, fl_drawing_shown(shapes->drawing, next));
     if (frames->wet && marks && !fl_wet_frame(frames->wet, shown, error)) {
         fl_draw_list_free(draws);
         return false;
@@ -307,14 +319,15 @@ static bool compose(FlFrames *frames, int frame, int next, bool marks, FlComposi
     FlComposeInput input = compose_input(frames, shown);
     g_auto(FlContacts) contacts = {0};
     input.contacts = &contacts;
-    if (frames->contacts && !fl_contacts_find(&contacts, plan, &input, draws, shown, error)) {
+    if (frames->contacts &&
+        !fl_contacts_find(&contacts, &plan->shapes, &input, draws, shown, error)) {
         fl_draw_list_free(draws);
         return false;
     }
     const bool made =
         fl_composite_init(composite, &input, shown, draws, plan->format->takes_16, error) &&
         (!plan->half || frames->small ||
-         fl_composite_enlarge(composite, plan->width, plan->height, error));
+         fl_composite_enlarge(composite, shapes->page_width, shapes->page_height, error));
     trim(plan);
     return made;
 }
@@ -327,12 +340,12 @@ static bool know_before(FlFrames *frames, int frame, double *paint_s, GError **e
     const bool loops = plan->options.loop;
     g_auto(FlComposite) plain = {0};
     if (!frames->wet || fl_wet_begun(frames->wet) || frames->small ||
-        (!loops && (frame > 0 || fl_drawing_earlier(plan->drawing) == 0 ||
+        (!loops && (frame > 0 || fl_drawing_earlier(plan->shapes.drawing) == 0 ||
                     plan->options.registration == FL_REGISTRATION_ON))) // each has its own place
         return true;
     return compose(frames, frame, -1, false, &plain, paint_s, error) &&
-           (loops ? fl_wet_learn(frames->wet, fl_drawing_shown(plan->drawing, frame), frames->wet,
-                                 error)
+           (loops ? fl_wet_learn(frames->wet, fl_drawing_shown(plan->shapes.drawing, frame),
+                                 frames->wet, error)
                   : know_earlier(frames, error));
 }
 
@@ -360,7 +373,7 @@ static bool seek_marks(FlFrames *frames, int shown, GError **error)
     for (int f = MAX(frames->marked + 1, first); good && f < shown; f++) {
         g_auto(FlComposite) composite = {0};
         double paint_s;
-        good = fl_drawing_shown(frames->plan->drawing, f) != f ||
+        good = fl_drawing_shown(frames->plan->shapes.drawing, f) != f ||
                (seek_painters(frames, f, fl_painter_seek, error) &&
                 make_frame(frames, f, -1, &composite, &paint_s, error));
     }
@@ -372,7 +385,8 @@ bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composit
 {
     // a merge that starts late has the paint of the earlier frames
     const bool late = frames->wet && frames->plan->options.merge && !fl_wet_begun(frames->wet);
-    return (!late || seek_marks(frames, fl_drawing_shown(frames->plan->drawing, frame), error)) &&
+    return (!late ||
+            seek_marks(frames, fl_drawing_shown(frames->plan->shapes.drawing, frame), error)) &&
            make_frame(frames, frame, next, composite, paint_s, error);
 }
 
@@ -381,14 +395,15 @@ bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composit
 static bool make_sheet(FlFrames *frames, GError **error)
 {
     const FlPlan *plan = frames->plan;
+    const FlShapes *shapes = &plan->shapes;
     const FlRenderOptions *o = &plan->options;
     const FlPaperChoice choice = {.paper = o->paper,
                                   .scale =
-                                      plan->paper_px * (o->paper_scale > 0 ? o->paper_scale : 1),
+                                      shapes->paper_px * (o->paper_scale > 0 ? o->paper_scale : 1),
                                   .relief = o->paper_relief,
                                   .seed = o->paper_seed,
                                   .boil = o->paper_boil};
-    const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
+    const int width = shapes->width, height = shapes->height;
     const int size[] = {width, height, !o->background, choice.boil};
     FlDigest made_of = {0};
     fl_digest_add_text(&made_of, choice.paper);
@@ -401,7 +416,8 @@ static bool make_sheet(FlFrames *frames, GError **error)
     g_clear_pointer(&frames->sheet, fl_paper_sheet_free);
     frames->sheet_of = (FlDigest){0};
     if (!fl_paper_sheet_make(&choice, !o->background, width, height, &frames->sheet, error) ||
-        (frames->sheet && fl_plan_is_large(plan) && !fl_paper_sheet_put_away(frames->sheet, error)))
+        (frames->sheet && fl_shapes_are_large(&plan->shapes) &&
+         !fl_paper_sheet_put_away(frames->sheet, error)))
         return false;
     frames->sheet_of = made_of;
     return true;
@@ -416,7 +432,7 @@ bool fl_frames_check(FlFrames *frames, GError **error)
     if (directions && !(frames->directions = fl_picture_read(directions, error)))
         return false;
     return fl_background_init(&frames->background, plan->options.background,
-                              ground ? ground : plan->paper, plan->drawing, error) &&
+                              ground ? ground : plan->paper, plan->shapes.drawing, error) &&
            (fl_plan_is_of_paint(plan) ? fl_paper_check(plan->options.paper, error)
                                       : make_sheet(frames, error));
 }
@@ -424,42 +440,58 @@ bool fl_frames_check(FlFrames *frames, GError **error)
 /* Frees styles that an earlier plan has used. */
 static void drop_styles(const FlPlan *plan)
 {
+    const FlShapes *shapes = &plan->shapes;
     g_autoptr(GPtrArray) used = g_ptr_array_new();
-    for (int p = 0; p < plan->n_painted; p++) {
-        g_ptr_array_add(used, (gpointer)plan->painted[p].style);
-        g_ptr_array_add(used, (gpointer)plan->painted[p].tile);
+    for (int p = 0; p < shapes->n_painted; p++) {
+        g_ptr_array_add(used, (gpointer)shapes->painted[p].style);
+        g_ptr_array_add(used, (gpointer)shapes->painted[p].tile);
     }
     fl_style_cache_trim(plan->styles, used);
+}
+
+/* Looks up paint that is kept. While guides or statistics are inspected, everything is painted. */
+static void recall(FlFrames *frames)
+{
+    const FlPlan *plan = frames->plan;
+    const FlRenderOptions *o = &plan->options;
+    g_autoptr(FlFacts) film = plan->cache ? fl_plan_facts_of_paint(plan) : NULL;
+    const FlKeeping keeping = {plan->cache, plan->inputs, film,
+                               .takes = !o->report && !o->dump && !o->ebsynth};
+    fl_painters_recall(&frames->painters, &plan->shapes, &keeping);
 }
 
 bool fl_frames_prepare(FlFrames *frames, GError **error)
 {
     FlPainters *painters = &frames->painters;
-    const bool wet = fl_wet_wanted(frames->plan);
-    frames->contacts = fl_contacts_wanted(frames->plan);
-    fl_painters_recall(painters, frames->plan);
+    FlPlan *plan = frames->plan;
+    const bool composed = !fl_plan_is_of_paint(plan);
+    const bool wet = composed && fl_wet_wanted(&plan->shapes);
+    frames->contacts = composed && fl_contacts_wanted(&plan->shapes);
+    recall(frames);
     if (!wet)
         g_clear_pointer(&frames->wet, fl_wet_free);
     if (frames->old_plan)
-        drop_styles(frames->plan);
+        drop_styles(plan);
     g_clear_pointer(&frames->old_plan, fl_plan_free);
-    return (frames->plan->rasterised ||
+    return (plan->shapes.rasterised ||
             !(wet || frames->contacts || fl_painters_need_masks(painters)) ||
-            fl_plan_rasterise(frames->plan, error)) &&
-           fl_frames_tell(frames, "guides", 0, 0, error) && fl_painters_init(painters, error) &&
+            fl_shapes_rasterise(&plan->shapes, &plan->caller, error)) &&
+           fl_frames_tell(frames, "guides", 0, 0, error) &&
+           fl_painters_init(painters, &plan->shapes, fl_style_cache_bytes(plan->styles),
+                            plan->options.stats || plan->options.report, error) &&
            (!wet || open_wet(frames, error));
 }
 
 bool fl_frames_seek(FlFrames *frames, int frame, GError **error)
 {
-    const int shown = fl_drawing_shown(frames->plan->drawing, frame);
+    const int shown = fl_drawing_shown(frames->plan->shapes.drawing, frame);
     return (!frames->wet || seek_marks(frames, shown, error)) &&
            seek_painters(frames, shown, fl_painter_seek, error);
 }
 
 bool fl_frames_start_at(FlFrames *frames, int frame, GError **error)
 {
-    const int shown = fl_drawing_shown(frames->plan->drawing, frame);
+    const int shown = fl_drawing_shown(frames->plan->shapes.drawing, frame);
     if (frames->wet && frames->marked != shown - 1)
         begin_wet(frames, WET_IN_DRAFTS);
     return seek_painters(frames, shown, fl_painter_start_at, error);
@@ -491,7 +523,7 @@ void fl_frames_init(FlFrames *frames, FlPlan *plan)
                          .drawn = -1,
                          .beside = fl_schedule_threads() > 1,
                          .advice = "run again to resume",
-                         .start = plan ? plan->start : 0};
+                         .start = plan ? plan->caller.start : 0};
 }
 
 void fl_frames_follow(FlFrames *frames, FlPlan *plan)
@@ -501,7 +533,8 @@ void fl_frames_follow(FlFrames *frames, FlPlan *plan)
     frames->old_plan = frames->plan, frames->plan = plan;
     frames->drawn = frames->shown = -1;
     // masks that were taken over are rasterised
-    if (!plan->rasterised || plan->options.paper_seed != frames->old_plan->options.paper_seed)
+    if (!plan->shapes.rasterised ||
+        plan->options.paper_seed != frames->old_plan->options.paper_seed)
         g_clear_pointer(&frames->wet, fl_wet_free);
     g_clear_pointer(&frames->motion, fl_motion_source_free);
 }

@@ -114,14 +114,13 @@ static bool configure(GivenRegion *given, GError **error)
 static bool choose_style(GivenRegion *given, GError **error)
 {
     const FlRegionPaint *region = given->region;
-    static const FlRenderOptions silent; // styles are made larger without a word
     FlRegionPlan *plan = &given->plan;
     FlRegionSettings *settings = &plan->settings;
     const float px =
         settings->params.style_by_page ? fl_page_scale(region->width, region->height) : 1;
     settings->params.half_size = false;
     fl_params_scale_lengths(&settings->params, px);
-    given->styles = fl_style_cache_new(&silent);
+    given->styles = fl_style_cache_new(true, false);
     plan->style = fl_style_cache_get(given->styles, settings, px, error);
     if (plan->style && fl_field_px(plan->style->exemplar) == 2)
         fl_params_scale_lengths(&settings->params, .5f);

@@ -10,20 +10,20 @@
 #include <math.h>
 
 /* The memory of a render follows from the sizes, so a shortage is known before anything is made. */
-static bool check_memory(const FlPainters *painters, GError **error)
+static bool check_memory(const FlPainters *painters, double bytes, GError **error)
 {
-    const FlPlan *plan = painters->plan;
-    double bytes = fl_plan_least_bytes(plan), largest = 0;
+    const FlShapes *shapes = &painters->shapes;
+    double largest = 0;
+    bytes += fl_shapes_least_bytes(shapes);
     for (int p = 0; p < painters->n; p++) {
         const FlPainter *painter = painters->painter[p];
-        bytes += fl_painter_bytes(painter, fl_plan_is_large(plan));
+        bytes += fl_painter_bytes(painter, fl_shapes_are_large(shapes));
         largest = MAX(largest, (double)fl_rect_pixels(painter->result.rect));
     }
     bytes += 90 * largest; // measured: what is painted at a time, and scratch
-    bytes += fl_style_cache_bytes(plan->styles);
     g_autofree char *where =
-        g_strdup_printf("%s, %d regions in %dx%d pixels", fl_drawing_name(plan->drawing),
-                        painters->n, plan->width, plan->height);
+        g_strdup_printf("%s, %d regions in %dx%d pixels", fl_drawing_name(shapes->drawing),
+                        painters->n, shapes->page_width, shapes->page_height);
     return fl_limit_check(FL_LIMIT_MEMORY, ceil(bytes / (1 << 20)), where, error);
 }
 
@@ -54,11 +54,11 @@ static bool make_guides(FlPainters *painters, GError **error)
 
 /* ---- input from the film --------------------------------------------------------------------- */
 
-/* Flow files have the size of the output, which drafts halve. */
-static bool load_flow(const FlPlan *plan, const FlShapes *shapes, const char *file, float unknown,
-                      float *flow, GError **error)
+/* Flow files have the size of the frames, which drafts halve. */
+static bool load_flow(const FlShapes *shapes, const char *file, float unknown, float *flow,
+                      GError **error)
 {
-    const int width = plan->width, height = plan->height;
+    const int width = shapes->page_width, height = shapes->page_height;
     if (width == shapes->width && height == shapes->height)
         return fl_flow_load(file, width, height, unknown, flow, error);
     g_autofree float *full =
@@ -69,44 +69,36 @@ static bool load_flow(const FlPlan *plan, const FlShapes *shapes, const char *fi
     return true;
 }
 
-/* FlShapes.flow of the painters in data. The first frame may lack a file, since no frame comes
- * before it. */
+/* FlShapes.flow of the shapes in data. The first frame may lack a file, since no frame comes before
+ * it. */
 static bool flow_from_file(void *data, const FlRegionPlan *region, int frame, float unknown,
                            float *flow, GError **error)
 {
-    const FlPainters *painters = data;
-    const FlPlan *plan = painters->plan;
-    const FlShapes *shapes = &painters->shapes;
+    const FlShapes *shapes = data;
     g_autofree char *file = fl_output_name(
-        region->flow_files, fl_drawing_number(plan->drawing, frame), region->name, error);
+        region->flow_files, fl_drawing_number(shapes->drawing, frame), region->name, error);
     if (!file)
         return false;
     if (frame > 0 || region->loops || g_file_test(file, G_FILE_TEST_EXISTS))
-        return load_flow(plan, shapes, file, unknown, flow, error);
+        return load_flow(shapes, file, unknown, flow, error);
     for (size_t k = 0; k < 2 * (size_t)shapes->width * (size_t)shapes->height; k++)
         flow[k] = unknown;
     return true;
 }
 
-static FlShapes shapes_of(FlPainters *painters)
+/* Copies them, since painters stay while plans follow each other. */
+static void take_shapes(FlPainters *painters, const FlShapes *shapes)
 {
-    const FlPlan *plan = painters->plan;
-    return (FlShapes){.n_frames = fl_drawing_frames(plan->drawing),
-                      .width = fl_drawing_width(plan->drawing),
-                      .height = fl_drawing_height(plan->drawing),
-                      .seed = plan->options.seed,
-                      .masks = plan->masks,
-                      .surround = plan->surround,
-                      .drawing = plan->drawing,
-                      .flow = plan->options.flow ? flow_from_file : NULL,
-                      .data = painters,
-                      .stop = {plan->any_order ? plan->options.stopped : NULL, plan->options.data}};
+    painters->shapes = *shapes;
+    painters->shapes.flow =
+        shapes->n_painted > 0 && shapes->painted[0].flow_files ? flow_from_file : NULL;
+    painters->shapes.data = &painters->shapes;
 }
 
 /* Opens the drawing's own motion for the regions whose paint it carries. */
 static bool open_motion(FlPainters *painters, GError **error)
 {
-    const FlPlan *plan = painters->plan;
+    const FlShapes *shapes = &painters->shapes;
     for (int p = 0; p < painters->n; p++) {
         FlPainter *painter = painters->painter[p];
         const bool halved = fl_field_px(painter->plan->style->exemplar) == 2;
@@ -115,7 +107,7 @@ static bool open_motion(FlPainters *painters, GError **error)
             painter->origin != FL_FROM_ENGINE)
             continue;
         if (!*motion &&
-            !(*motion = fl_motion_source_new(plan->drawing, plan->masks, halved, error)))
+            !(*motion = fl_motion_source_new(shapes->drawing, shapes->masks, halved, error)))
             return false;
         painter->motion = *motion;
     }
@@ -140,25 +132,25 @@ static void free_painter(FlPainters *painters, FlPainter *painter)
 }
 
 /* Returns: true if earlier painters are those of a plan's regions, in order. */
-static bool same_regions(FlPainters before, const FlPlan *plan)
+static bool same_regions(FlPainters before, const FlShapes *shapes)
 {
-    bool same = before.n == plan->n_painted;
+    bool same = before.n == shapes->n_painted;
     for (int p = 0; p < before.n && same; p++)
-        same = before.painter[p]->plan->region == plan->painted[p].region;
+        same = before.painter[p]->plan->region == shapes->painted[p].region;
     return same;
 }
 
 /* A painter for each region: that of an earlier plan with the same masks, or an empty one. */
-static void take_painters(FlPainters *painters, const FlPlan *plan)
+static void take_painters(FlPainters *painters, const FlShapes *shapes)
 {
     const FlPainters before = *painters;
     const bool same =
-        before.plan && before.shapes.masks == plan->masks && same_regions(before, plan);
-    *painters = (FlPainters){.plan = plan, .n = plan->n_painted, .n_painted = before.n_painted};
-    painters->painter = g_new0(FlPainter *, MAX(plan->n_painted, 1));
-    painters->painted = g_new0(const FlPaintedRegion *, MAX(plan->n_painted, 1));
-    painters->fresh = g_new0(bool, MAX(plan->n_painted, 1));
-    painters->shapes = shapes_of(painters);
+        before.painter && before.shapes.masks == shapes->masks && same_regions(before, shapes);
+    *painters = (FlPainters){.n = shapes->n_painted, .n_painted = before.n_painted};
+    painters->painter = g_new0(FlPainter *, MAX(shapes->n_painted, 1));
+    painters->painted = g_new0(const FlPaintedRegion *, MAX(shapes->n_painted, 1));
+    painters->fresh = g_new0(bool, MAX(shapes->n_painted, 1));
+    take_shapes(painters, shapes);
     for (int p = 0; p < before.n; p++)
         if (same)
             painters->painter[p] = before.painter[p];
@@ -172,23 +164,23 @@ static void take_painters(FlPainters *painters, const FlPlan *plan)
     g_free(before.painter);
     g_free(before.painted);
     g_free(before.fresh);
-    for (int p = 0; p < plan->n_painted; p++) {
+    for (int p = 0; p < shapes->n_painted; p++) {
         painters->painter[p] = painters->painter[p] ? painters->painter[p] : g_new0(FlPainter, 1);
         painters->painted[p] = &painters->painter[p]->result;
     }
 }
 
-void fl_painters_recall(FlPainters *painters, const FlPlan *plan)
+void fl_painters_recall(FlPainters *painters, const FlShapes *shapes, const FlKeeping *keeping)
 {
-    take_painters(painters, plan);
-    for (int p = 0; p < plan->n_painted; p++) {
+    take_painters(painters, shapes);
+    for (int p = 0; p < shapes->n_painted; p++) {
         FlPainter *painter = painters->painter[p];
-        const FlRegionPlan *region = &plan->painted[p];
+        const FlRegionPlan *region = &shapes->painted[p];
         FlReuse reuse = {0};
-        fl_reuse_init(&reuse, plan->cache, &painters->shapes, region, plan->inputs);
+        fl_reuse_init(&reuse, keeping->cache, &painters->shapes, region, keeping->inputs);
         painters->fresh[p] = !paints_so(painter, region, reuse.method);
         if (painters->fresh[p]) {
-            fl_reuse_recall(&reuse, plan, p);
+            fl_reuse_recall(&reuse, keeping, shapes, p);
             painters->n_painted += painter->reuse.n_painted;
             fl_painter_init(painter, &painters->shapes, region, reuse);
         } else {
@@ -200,14 +192,14 @@ void fl_painters_recall(FlPainters *painters, const FlPlan *plan)
 
 bool fl_painters_need_masks(const FlPainters *painters)
 {
-    const FlPlan *plan = painters->plan;
+    const FlShapes *shapes = &painters->shapes;
     bool needed = false;
-    if (plan->rasterised)
+    if (shapes->rasterised)
         return false;
     for (int p = 0; p < painters->n && !needed; p++) {
-        const FlRegionPlan *region = &plan->painted[p];
-        const bool placed =
-            region->paint_files && (region->place.width > 0 || fl_plan_hides(plan, region->region));
+        const FlRegionPlan *region = &shapes->painted[p];
+        const bool placed = region->paint_files &&
+                            (region->place.width > 0 || fl_shapes_hide(shapes, region->region));
         needed = !placed && !painters->painter[p]->reuse.known;
     }
     return needed;
@@ -235,19 +227,20 @@ void fl_painters_finish(FlPainters *painters)
         fl_reuse_finish(&painters->painter[p]->reuse);
 }
 
-bool fl_painters_init(FlPainters *painters, GError **error)
+bool fl_painters_init(FlPainters *painters, const FlShapes *shapes, double bytes, bool energies,
+                      GError **error)
 {
-    const FlPlan *plan = painters->plan;
-    const bool energies = plan->options.stats || plan->options.report;
+    take_shapes(painters, shapes);
     for (int p = 0; p < painters->n; p++)
         if (painters->fresh[p])
-            fl_painter_place(painters->painter[p], fl_plan_hides(plan, plan->painted[p].region));
-    if (!check_memory(painters, error) || !open_motion(painters, error) ||
+            fl_painter_place(painters->painter[p],
+                             fl_shapes_hide(shapes, shapes->painted[p].region));
+    if (!check_memory(painters, bytes, error) || !open_motion(painters, error) ||
         !make_guides(painters, error))
         return false;
     for (int p = 0; p < painters->n; p++)
-        if (painters->painter[p]->paint && plan->painted[p].engine->measure)
-            plan->painted[p].engine->measure(painters->painter[p]->paint, energies);
+        if (painters->painter[p]->paint && shapes->painted[p].engine->measure)
+            shapes->painted[p].engine->measure(painters->painter[p]->paint, energies);
     return true;
 }
 

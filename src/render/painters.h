@@ -5,12 +5,11 @@
 #include "render/painter.h"
 
 typedef struct FlPainters {
-    const FlPlan *plan; // borrowed
-    FlShapes shapes;    // of the plan
+    FlShapes shapes; // of the plan
     int n;
     bool *fresh;                     // by painter: it is to be made
     int n_painted;                   // pictures of painters that are gone
-    FlPainter **painter;             // one for each of plan->painted
+    FlPainter **painter;             // one for each of shapes.painted
     const FlPaintedRegion **painted; // their results
     FlMotionSource *motion[2];       // for guides of half the size second; NULL: not needed
 } FlPainters;
@@ -19,11 +18,10 @@ typedef struct FlPainters {
 typedef bool (*FlPainterWork)(void *data, int p, int step, GError **error);
 
 /**
- * Makes the painters, and looks up which pictures of the plan's regions its cache has; call it
- * first. From an earlier plan, of which this one has the masks, painters of regions that are
- * painted as before stay.
+ * Makes the painters, and looks up which pictures of the regions the cache has; call it first. From
+ * earlier shapes that have the same masks, painters of regions that are painted as before stay.
  */
-void fl_painters_recall(FlPainters *painters, const FlPlan *plan);
+void fl_painters_recall(FlPainters *painters, const FlShapes *shapes, const FlKeeping *keeping);
 
 /** True if any region's masks are needed for its guides. */
 bool fl_painters_need_masks(const FlPainters *painters);
@@ -36,10 +34,12 @@ bool fl_painters_stale(const FlPainters *painters);
 void fl_painters_finish(FlPainters *painters);
 
 /**
- * Checks the memory limit, then makes the guides of every region that is painted; the plan's masks
- * are rasterised, if they are needed. FL_ERROR_LIMIT, FL_ERROR_NO_MEMORY, or an error about a file.
+ * Checks the memory limit, then makes the guides of every region that is painted; the masks are
+ * rasterised, if they are needed. bytes: of styles; energies: they are measured. FL_ERROR_LIMIT,
+ * FL_ERROR_NO_MEMORY, or an error about a file.
  */
-bool fl_painters_init(FlPainters *painters, GError **error);
+bool fl_painters_init(FlPainters *painters, const FlShapes *shapes, double bytes, bool energies,
+                      GError **error);
 
 /** After a failure of that: what was to be made is made by the next plan, which has the others, and
  * the guides that are whole. */

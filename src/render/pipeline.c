@@ -67,8 +67,9 @@ static bool inspect_frame(Pipeline *pipeline, double paint_s, double compose_s, 
                                 paint_s,
                                 compose_s,
                                 pipeline->write_s};
-    fl_stats_frame(&pipeline->stats, pipeline->frames.painters.painted, plan->n_painted,
-                   fl_drawing_number(plan->drawing, done.frame), paint_s, compose_s, done.write_s);
+    fl_stats_frame(&pipeline->stats, pipeline->frames.painters.painted, plan->shapes.n_painted,
+                   fl_drawing_number(plan->shapes.drawing, done.frame), paint_s, compose_s,
+                   done.write_s);
     pipeline->write_s = 0; // counted in fl_stats_frame()
     return fl_report_frame(pipeline->report, &done, error);
 }
@@ -133,7 +134,6 @@ static bool begin_export(const Pipeline *pipeline, GError **error)
 static bool note_obstacles(Pipeline *pipeline, GError **error)
 {
     g_autoptr(GError) obstacle = NULL;
-    const FlRenderOptions *o = &pipeline->frames.plan->options;
     if (fl_resume_init(&pipeline->resume, pipeline->frames.plan, &obstacle))
         return true;
     if (!g_error_matches(obstacle, FL_ERROR, FL_ERROR_EXISTS) &&
@@ -141,7 +141,7 @@ static bool note_obstacles(Pipeline *pipeline, GError **error)
         g_propagate_error(error, g_steal_pointer(&obstacle));
         return false;
     }
-    fl_tell(o->note, o->data, "%s", obstacle->message);
+    fl_note(&pipeline->frames.plan->caller, "%s", obstacle->message);
     return true;
 }
 
@@ -153,7 +153,7 @@ static bool restore_state(Pipeline *pipeline, GError **error)
     if (!fl_resume_start(resume, plan, error))
         return false;
     if (resume->found && resume->first > plan->first)
-        pipeline->frames.shown = fl_drawing_shown(plan->drawing, resume->first - 1);
+        pipeline->frames.shown = fl_drawing_shown(plan->shapes.drawing, resume->first - 1);
     if (resume->found)
         return fl_frames_load(&pipeline->frames, resume->record->states, resume->path, error);
     return !resume->path || fl_frames_save(&pipeline->frames, resume->record->states, error);
@@ -217,7 +217,7 @@ static bool run(Pipeline *pipeline, GError **error)
         return false;
     fl_resume_finish(&pipeline->resume, pipeline->frames.plan);
     fl_summary_of_render(pipeline->frames.plan, &pipeline->stats);
-    fl_summary_of_reuse(&pipeline->frames.painters);
+    fl_summary_of_reuse(&pipeline->frames.painters, &pipeline->frames.plan->caller);
     fl_painters_finish(&pipeline->frames.painters);
     return true;
 }
@@ -232,11 +232,12 @@ static bool dry_run(Pipeline *pipeline, GError **error)
     if (!fl_frames_check(&pipeline->frames, error) || !note_obstacles(pipeline, error) ||
         !fl_frames_prepare(&pipeline->frames, error))
         return false;
-    for (int k = 0; k < 2 && k * plan->hold < fl_drawing_frames(plan->drawing); k++) {
+    for (int k = 0; k < 2 && k * plan->shapes.hold < fl_drawing_frames(plan->shapes.drawing); k++) {
         const gint64 start = g_get_monotonic_time();
         g_auto(FlComposite) composite = {0};
         double paint_s = 0;
-        if (!fl_frames_make(&pipeline->frames, k * plan->hold, -1, &composite, &paint_s, error))
+        if (!fl_frames_make(&pipeline->frames, k * plan->shapes.hold, -1, &composite, &paint_s,
+                            error))
             return false;
         frame_s = seconds_since(start);
     }
@@ -261,9 +262,9 @@ static bool try_render(const FlRenderOptions *options, FlFrameTaker taker, bool 
 {
     FlPlan *plan = fl_plan_new(options, error);
     Pipeline pipeline = {.taker = taker};
-    const bool whole = plan && plan->drawing;
+    const bool whole = plan && plan->shapes.drawing;
     fl_frames_init(&pipeline.frames, plan);
-    if (whole && fl_plan_is_large(plan))
+    if (whole && fl_shapes_are_large(&plan->shapes))
         fl_memory_map_planes();
     const bool done = plan && (!whole || fl_guard_inputs(plan, error)) &&
                       (options->verify    ? fl_resume_verify(plan, error)

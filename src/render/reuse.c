@@ -7,35 +7,34 @@
 #include <string.h>
 
 /* A slot that every render of the same drawing and region uses: what it was painted by last. */
-static FlDigest slot_of(const FlPlan *plan, int p)
+static FlDigest slot_of(const FlShapes *shapes, int p)
 {
     FlDigest slot = {0};
-    g_autofree char *path = g_canonicalize_filename(fl_drawing_file(plan->drawing, 0), NULL);
+    g_autofree char *path = g_canonicalize_filename(fl_drawing_file(shapes->drawing, 0), NULL);
     fl_digest_add_text(&slot, path);
-    fl_digest_add_text(&slot, plan->painted[p].name);
+    fl_digest_add_text(&slot, shapes->painted[p].name);
     return slot;
 }
 
 /* Held ones counted once, those of a lead-in twice. */
-static guint pictures_of(const FlPlan *plan, int p)
+static guint pictures_of(const FlShapes *shapes, int p)
 {
-    const FlRegionPlan *region = &plan->painted[p];
-    const int n = (fl_drawing_frames(plan->drawing) - 1) / region->settings.hold + 1;
+    const FlRegionPlan *region = &shapes->painted[p];
+    const int n = (shapes->n_frames - 1) / region->settings.hold + 1;
     return (guint)(n + (region->loops ? fl_loop_length(n) : 0));
 }
 
 /* The digests of all pictures, if they and every picture are kept; an empty list for a region that
  * is hidden in all frames, which counts if only frames are made. */
-static void recall(FlReuse *reuse, const FlPlan *plan, int p)
+static void recall(FlReuse *reuse, const FlShapes *shapes, int p)
 {
-    const FlRect page = {0, 0, fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing)};
+    const FlRect page = {0, 0, shapes->width, shapes->height};
     g_autoptr(GBytes) film = fl_store_get(reuse->cache, FL_KEPT_FILM, reuse->film);
     FlReader reader = fl_reader_of(film);
-    const guint n = (guint)fl_reader_count(&reader, pictures_of(plan, p));
+    const guint n = (guint)fl_reader_count(&reader, pictures_of(shapes, p));
     const FlRect rect = n > 0 ? fl_reader_rect(&reader, page) : (FlRect){0};
     const uint8_t *digests = fl_reader_take(&reader, n, sizeof(FlDigest));
-    if (!fl_reader_ends(&reader) ||
-        (n == 0 ? !fl_plan_frames_alone(plan) : n != pictures_of(plan, p)))
+    if (!fl_reader_ends(&reader) || (n == 0 ? !shapes->frames_alone : n != pictures_of(shapes, p)))
         return;
     g_autoptr(GArray) known = g_array_new(FALSE, FALSE, sizeof(FlDigest));
     g_array_append_vals(known, digests, n);
@@ -57,17 +56,17 @@ void fl_reuse_init(FlReuse *reuse, FlStore *cache, const FlShapes *shapes,
     reuse->last = reuse->method = fl_facts_digest(reuse->facts);
 }
 
-void fl_reuse_recall(FlReuse *reuse, const FlPlan *plan, int p)
+void fl_reuse_recall(FlReuse *reuse, const FlKeeping *keeping, const FlShapes *shapes, int p)
 {
-    const FlRenderOptions *o = &plan->options;
-    reuse->takes = !o->report && !o->dump && !o->ebsynth;
+    reuse->takes = keeping->takes;
     if (!reuse->cache)
         return;
-    reuse->slot = slot_of(plan, p);
-    fl_region_facts_add_film(reuse->facts, plan, p);
+    reuse->slot = slot_of(shapes, p);
+    fl_facts_append(reuse->facts, keeping->film);
+    fl_region_facts_add_flow(reuse->facts, shapes, p, keeping->inputs);
     reuse->film = fl_facts_digest(reuse->facts);
     if (reuse->takes)
-        recall(reuse, plan, p);
+        recall(reuse, shapes, p);
 }
 
 void fl_reuse_clear(FlReuse *reuse)

@@ -39,8 +39,16 @@ void fl_reuse_init(FlReuse *reuse, FlStore *cache, const FlShapes *shapes,
                    const FlRegionPlan *region, FlInputs *inputs);
 void fl_reuse_clear(FlReuse *reuse);
 
-/** Looks up the pictures of plan->painted[p]. */
-void fl_reuse_recall(FlReuse *reuse, const FlPlan *plan, int p);
+/** The store in which paint is kept, and the facts of a film that decide it. Borrowed. */
+typedef struct FlKeeping {
+    FlStore *cache;      // NULL: pictures are neither taken nor kept
+    FlInputs *inputs;    // know the digests of styles and flow
+    const FlFacts *film; // NULL without a cache
+    bool takes;          // false while guides or statistics are inspected
+} FlKeeping;
+
+/** Looks up the pictures of shapes->painted[p]. */
+void fl_reuse_recall(FlReuse *reuse, const FlKeeping *keeping, const FlShapes *shapes, int p);
 
 /** Begins the chain of a region whose pictures are not known and have this place in the frame. */
 void fl_reuse_begin(FlReuse *reuse, FlRect rect);

@@ -7,7 +7,7 @@
 
 static void send_note(const FlPlan *plan, const char *line)
 {
-    fl_tell(plan->options.note, plan->options.data, "%s", line);
+    fl_note(&plan->caller, "%s", line);
 }
 
 static const char *written(const FlPlan *plan)
@@ -31,7 +31,7 @@ void fl_summary_of_render(const FlPlan *plan, const FlStats *stats)
                                 : g_strdup_printf("painted %d frame%s: %s%s%s", n, plural(n), movie,
                                                   and, written(plan));
     g_autofree char *seconds = fl_stats_summary(stats, n);
-    g_autofree char *gaps = fl_drawing_left_out(plan->drawing, plan->options.missing);
+    g_autofree char *gaps = fl_drawing_left_out(plan->shapes.drawing, plan->options.missing);
     send_note(plan, done);
     if (gaps)
         send_note(plan, gaps);
@@ -70,7 +70,7 @@ static char **reasons_of(const FlPainters *painters)
 
 /* Notes one line for all regions that share the reason of region p, unless an earlier region
  * did. */
-static void tell_reason(const FlPainters *painters, int p, char **reasons)
+static void tell_reason(const FlPainters *painters, int p, char **reasons, const FlCaller *caller)
 {
     int n = 0, painted = 0, all = 0;
     for (int q = 0; q < painters->n; q++) {
@@ -81,14 +81,14 @@ static void tell_reason(const FlPainters *painters, int p, char **reasons)
             return;
         n++, painted += reuse->n_painted, all += reuse->n_painted + reuse->n_taken;
     }
-    g_autofree char *who = n == 1 ? g_strdup_printf("region %s", painters->plan->painted[p].name)
+    g_autofree char *who = n == 1 ? g_strdup_printf("region %s", painters->painter[p]->plan->name)
                                   : g_strdup_printf("%d regions", n);
     g_autofree char *line =
         g_strdup_printf("%s: painted %d of %d pictures, since %s", who, painted, all, reasons[p]);
-    send_note(painters->plan, line);
+    fl_note(caller, "%s", line);
 }
 
-void fl_summary_of_reuse(const FlPainters *painters)
+void fl_summary_of_reuse(const FlPainters *painters, const FlCaller *caller)
 {
     int taken = 0, painted = 0;
     g_auto(GStrv) reasons = reasons_of(painters);
@@ -96,19 +96,19 @@ void fl_summary_of_reuse(const FlPainters *painters)
         const FlReuse *reuse = &painters->painter[p]->reuse;
         taken += reuse->n_taken, painted += reuse->n_painted;
         if (reasons[p][0])
-            tell_reason(painters, p, reasons);
+            tell_reason(painters, p, reasons, caller);
     }
     if (taken == 0)
         return;
     g_autofree char *line =
         g_strdup_printf("paint of regions: %d pictures from the cache, %d painted", taken, painted);
-    send_note(painters->plan, line);
+    fl_note(caller, "%s", line);
 }
 
 /* An estimate of the time; held frames take no time. */
 static char *forecast(const FlPlan *plan, double frame_s)
 {
-    const int n = (fl_drawing_frames(plan->drawing) - 1) / plan->hold + 1;
+    const int n = (plan->shapes.n_frames - 1) / plan->shapes.hold + 1;
     const int lead_in = plan->options.loop ? fl_loop_length(n) : 0;
     const int seconds = (int)(frame_s * (n + lead_in) + 0.5);
     return g_strdup_printf("that would take about %d:%02d:%02d, %.2f seconds a frame",
@@ -117,13 +117,15 @@ static char *forecast(const FlPlan *plan, double frame_s)
 
 void fl_summary_of_dry_run(const FlPlan *plan, double frame_s)
 {
-    const int n = fl_drawing_frames(plan->drawing);
+    const FlShapes *shapes = &plan->shapes;
+    const int n = shapes->n_frames;
     const char *movie = plan->movie ? plan->movie : "", *and = plan->movie ? " and " : "";
-    g_autofree char *work = g_strdup_printf(
-        "would paint %d frame%s of %dx%d pixels, %d region%s: %s%s%s", n, plural(n), plan->width,
-        plan->height, plan->n_painted, plural(plan->n_painted), movie, and, written(plan));
+    g_autofree char *work =
+        g_strdup_printf("would paint %d frame%s of %dx%d pixels, %d region%s: %s%s%s", n, plural(n),
+                        shapes->page_width, shapes->page_height, shapes->n_painted,
+                        plural(shapes->n_painted), movie, and, written(plan));
     g_autofree char *time = forecast(plan, frame_s);
-    g_autofree char *gaps = fl_drawing_left_out(plan->drawing, plan->options.missing);
+    g_autofree char *gaps = fl_drawing_left_out(shapes->drawing, plan->options.missing);
     send_note(plan, work);
     if (gaps)
         send_note(plan, gaps);

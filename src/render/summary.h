@@ -12,7 +12,7 @@ void fl_summary_of_render(const FlPlan *plan, const FlStats *stats);
 void fl_summary_of_nothing(const FlPlan *plan);
 
 /** Notes how much paint was taken from the cache, and why the rest was not. */
-void fl_summary_of_reuse(const FlPainters *painters);
+void fl_summary_of_reuse(const FlPainters *painters, const FlCaller *caller);
 
 /** Notes what would be painted, and an estimate of the time at frame_s seconds a frame. */
 void fl_summary_of_dry_run(const FlPlan *plan, double frame_s);

@@ -10,15 +10,15 @@
 #define FASTEST 0.25 // turn or growth in a frame beyond which it is a cut
 
 /** The camera's region; auto: the largest ground. */
-bool fl_wet_find_camera(const FlPlan *plan, int *camera, GError **error)
+bool fl_wet_find_camera(const FlShapes *shapes, const char *wanted, int *camera, GError **error)
 {
-    const char *wanted = plan->options.camera ? plan->options.camera : "auto";
+    wanted = wanted ? wanted : "auto";
     const bool none = g_str_equal(wanted, "none"), found = g_str_equal(wanted, "auto");
     double most = FL_GROUND_SHARE;
     *camera = -1;
-    for (int r = 0; r < fl_drawing_regions(plan->drawing) && !none; r++) {
-        const double share = fl_plan_share_of_page(plan, r);
-        const bool named = g_str_equal(wanted, fl_drawing_region(plan->drawing, r)->name);
+    for (int r = 0; r < fl_drawing_regions(shapes->drawing) && !none; r++) {
+        const double share = fl_shapes_share_of_page(shapes, r);
+        const bool named = g_str_equal(wanted, fl_drawing_region(shapes->drawing, r)->name);
         if (named || (found && share > most))
             *camera = r, most = share;
     }
@@ -89,7 +89,7 @@ static bool fit_motion(const float *motion, FlRect page, FlAffine *came)
 bool fl_wet_follow_camera(const FlWet *wet, int before, int frame, FlAffine *came, GError **error)
 {
     const FlRect page = wet->sheet.page;
-    const FlDrawing *drawing = wet->plan->drawing;
+    const FlDrawing *drawing = wet->shapes->drawing;
     if (wet->camera < 0 || before < 0)
         return true;
     g_autofree float *motion =

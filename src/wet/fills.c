@@ -8,12 +8,12 @@
 
 static bool lay_fills(const FlWet *wet, int frame, FlLaid *laid, GError **error)
 {
-    const FlPlan *plan = wet->plan;
-    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
+    const FlShapes *shapes = wet->shapes;
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(shapes->drawing, frame, error);
     fl_laid_begin(laid);
     for (int d = 0; draws && d < draws->n; d++) {
-        const int p = plan->painted_of[draws->draw[d].region];
-        const FlRegionSettings *settings = p < 0 ? NULL : &plan->painted[p].settings;
+        const int p = shapes->painted_of[draws->draw[d].region];
+        const FlRegionSettings *settings = p < 0 ? NULL : &shapes->painted[p].settings;
         if (settings)
             fl_laid_add_draw(laid, &draws->draw[d], settings->has_colour ? settings->colour : NULL,
                              wet->paper);
@@ -50,8 +50,8 @@ static bool is_rim(const FlWet *wet, const FlLaid *laid, int x, int y)
 /** The region of the same name; -1: there is none. */
 static int namesake(const FlWet *wet, const FlRegion *region)
 {
-    for (int r = 0; r < fl_drawing_regions(wet->plan->drawing); r++)
-        if (g_str_equal(fl_drawing_region(wet->plan->drawing, r)->name, region->name))
+    for (int r = 0; r < fl_drawing_regions(wet->shapes->drawing); r++)
+        if (g_str_equal(fl_drawing_region(wet->shapes->drawing, r)->name, region->name))
             return r;
     return -1;
 }
@@ -60,10 +60,10 @@ static int namesake(const FlWet *wet, const FlRegion *region)
 static void add_inks(const FlWet *wet, const FlLaid *fills, const FlWet *painted, float *of_fill,
                      float *of_paint)
 {
-    const int n = fl_drawing_regions(wet->plan->drawing);
+    const int n = fl_drawing_regions(wet->shapes->drawing);
     g_autofree int *other = g_new(int, MAX(n, 1));
     for (int r = 0; r < n; r++)
-        other[r] = namesake(painted, fl_drawing_region(wet->plan->drawing, r));
+        other[r] = namesake(painted, fl_drawing_region(wet->shapes->drawing, r));
     for (int y = 0; y < fills->height; y++)
         for (int x = 0; x < fills->width; x++) {
             const size_t cell = (size_t)y * (size_t)fills->width + (size_t)x;
@@ -82,7 +82,7 @@ static void add_inks(const FlWet *wet, const FlLaid *fills, const FlWet *painted
 bool fl_wet_learn(FlWet *wet, int frame, const FlWet *painted, GError **error)
 {
     const FlRect page = wet->sheet.page;
-    const size_t n = 3 * (size_t)fl_drawing_regions(wet->plan->drawing);
+    const size_t n = 3 * (size_t)fl_drawing_regions(wet->shapes->drawing);
     g_auto(FlLaid) fills = {0};
     if (page.width != painted->sheet.page.width || page.height != painted->sheet.page.height)
         return true;

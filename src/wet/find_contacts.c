@@ -20,7 +20,7 @@
 
 /* The regions of a film, and their contacts in a frame so far. */
 typedef struct Finder {
-    const FlPlan *plan;
+    const FlShapes *shapes;
     const FlComposeInput *input;
     const FlCover *cover; // of the frame
     int frame;
@@ -138,7 +138,7 @@ static FlAffine rest_of(const FlAnchor *at, double cell)
 static FlRect part_of(const Pair *pair, int frame)
 {
     const Finder *f = pair->f;
-    const FlMaskStore *masks = f->plan->masks;
+    const FlMaskStore *masks = f->shapes->masks;
     const FlRect page = f->grid.sheet.page;
     const int room = (int)ceilf(2 * pair->reach / f->scale) + 2;
     const FlRect own =
@@ -154,8 +154,8 @@ static FlRect part_of(const Pair *pair, int frame)
 /* The k-th frame before; below 0: the film begins later. */
 static int frame_before(const Finder *f, int k)
 {
-    const int n = fl_drawing_frames(f->plan->drawing), before = f->frame - k;
-    return f->plan->options.loop ? (before % n + n) % n : before;
+    const int n = f->shapes->n_frames, before = f->frame - k;
+    return f->shapes->loop ? (before % n + n) % n : before;
 }
 
 /* Returns: true if neither region of a pair has moved between two frames. */
@@ -164,11 +164,11 @@ static bool rests(const Pair *pair, int a, int b)
     const FlRegionPlan *both[] = {pair->own, pair->other};
     bool same = true;
     for (int k = 0; k < 2; k++) {
-        const FlAnchor one = fl_drawing_anchor(pair->f->plan->drawing, both[k]->region, a);
-        const FlAnchor other = fl_drawing_anchor(pair->f->plan->drawing, both[k]->region, b);
+        const FlAnchor one = fl_drawing_anchor(pair->f->shapes->drawing, both[k]->region, a);
+        const FlAnchor other = fl_drawing_anchor(pair->f->shapes->drawing, both[k]->region, b);
         same = same && one.x == other.x && one.y == other.y && one.cosine == other.cosine &&
                one.sine == other.sine &&
-               fl_mask_store_same(pair->f->plan->masks, both[k]->region,
+               fl_mask_store_same(pair->f->shapes->masks, both[k]->region,
                                   fl_wet_shown_by(both[k], a), fl_wet_shown_by(both[k], b));
     }
     return same;
@@ -178,8 +178,8 @@ static bool rests(const Pair *pair, int a, int b)
 static bool find_earlier(const Pair *pair, int then, FlRect part, float *earlier, GError **error)
 {
     const Finder *f = pair->f;
-    const FlAnchor at = fl_drawing_anchor(f->plan->drawing, pair->own->region, f->frame);
-    const FlAnchor was = fl_drawing_anchor(f->plan->drawing, pair->own->region, then);
+    const FlAnchor at = fl_drawing_anchor(f->shapes->drawing, pair->own->region, f->frame);
+    const FlAnchor was = fl_drawing_anchor(f->shapes->drawing, pair->own->region, then);
     const FlAffine rest = rest_of(&at, f->grid.cell), rest_then = rest_of(&was, f->grid.cell);
     const FlRect rect = part_of(pair, then);
     FlAffine back;
@@ -291,13 +291,13 @@ static bool are_wet(const FlRegionPlan *a, const FlRegionPlan *b)
            (a->style->front.bleed > 0 && b->style->front.bleed > 0);
 }
 
-bool fl_contacts_wanted(const FlPlan *plan)
+bool fl_contacts_wanted(const FlShapes *shapes)
 {
     bool wanted = false;
-    for (int p = 0; p < plan->n_painted; p++)
+    for (int p = 0; p < shapes->n_painted; p++)
         for (int q = 0; q < p && !wanted; q++)
-            wanted = are_wet(&plan->painted[p], &plan->painted[q]);
-    return wanted && !fl_plan_is_of_paint(plan);
+            wanted = are_wet(&shapes->painted[p], &shapes->painted[q]);
+    return wanted;
 }
 
 /* The place in the stack of a region's upper shape; -1: the frame has none. */
@@ -330,22 +330,22 @@ static bool add_contact(const Pair *pair, const FlContact *like, GError **error)
 /* Adds both contacts of a pair. */
 static bool add_pair(const Finder *f, const FlRegionPlan *a, const FlRegionPlan *b, GError **error)
 {
-    const FlPlan *plan = f->plan;
+    const FlShapes *shapes = f->shapes;
     const int upper = place_of(f->cover->draws, a->region);
     const int lower = place_of(f->cover->draws, b->region);
-    const FlRegionSettings *of_a = f->input->painted[a - plan->painted]->settings;
-    const FlRegionSettings *of_b = f->input->painted[b - plan->painted]->settings;
+    const FlRegionSettings *of_a = f->input->painted[a - shapes->painted]->settings;
+    const FlRegionSettings *of_b = f->input->painted[b - shapes->painted]->settings;
     if (upper < 0 || lower < 0 || a->region == b->region || !are_wet(a, b))
         return true;
     const float bleed = mean_bleed(bleed_of(a, of_a->bleed), bleed_of(b, of_b->bleed));
-    const float side = MIN(fl_drawing_anchor(plan->drawing, a->region, f->frame).side,
-                           fl_drawing_anchor(plan->drawing, b->region, f->frame).side);
+    const float side = MIN(fl_drawing_anchor(shapes->drawing, a->region, f->frame).side,
+                           fl_drawing_anchor(shapes->drawing, b->region, f->frame).side);
     const int figure = (a->area_px < b->area_px ? a : b)->region;
     const FlContact like = {
         .strength = bleed,
-        .anchor = fl_drawing_anchor(plan->drawing, figure, f->frame),
-        .page = 1 / plan->paper_px,
-        .reach_px = bleed * MIN(REACH_PX, OF_SIDE * side / plan->paper_px),
+        .anchor = fl_drawing_anchor(shapes->drawing, figure, f->frame),
+        .page = 1 / shapes->paper_px,
+        .reach_px = bleed * MIN(REACH_PX, OF_SIDE * side / shapes->paper_px),
         .key = fl_key(fl_key(f->input->seed, g_str_hash(a->name)), g_str_hash(b->name))};
     const Pair pair = {f, a, b, upper > lower, like.reach_px};
     const Pair back = {f, b, a, upper < lower, like.reach_px};
@@ -354,31 +354,31 @@ static bool add_pair(const Finder *f, const FlRegionPlan *a, const FlRegionPlan 
 }
 
 /* Returns: true if a region that has styles with keys was listed before. */
-static bool is_later_style(const FlPlan *plan, int p)
+static bool is_later_style(const FlShapes *shapes, int p)
 {
-    return p > 0 && plan->painted[p - 1].more;
+    return p > 0 && shapes->painted[p - 1].more;
 }
 
-bool fl_contacts_find(FlContacts *contacts, const FlPlan *plan, const FlComposeInput *input,
+bool fl_contacts_find(FlContacts *contacts, const FlShapes *shapes, const FlComposeInput *input,
                       const FlDrawList *draws, int frame, GError **error)
 {
-    const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
-    const int cell = MAX((int)(STEP_PX * plan->paper_px + .5f), 1);
+    const int width = shapes->width, height = shapes->height;
+    const int cell = MAX((int)(STEP_PX * shapes->paper_px + .5f), 1);
     g_auto(FlCover) cover = {0};
     const Finder finder = {
-        .plan = plan,
+        .shapes = shapes,
         .input = input,
         .cover = &cover,
         .frame = frame,
-        .grid = {.plan = plan,
+        .grid = {.shapes = shapes,
                  .cell = cell,
                  .sheet.page = {0, 0, (width + cell - 1) / cell, (height + cell - 1) / cell}},
-        .scale = (float)cell / plan->paper_px,
+        .scale = (float)cell / shapes->paper_px,
         .contacts = contacts};
     bool found = fl_cover_init(&cover, draws, width, height, (FlHiding){0}, error);
-    for (int p = 0; p < plan->n_painted && found; p++)
+    for (int p = 0; p < shapes->n_painted && found; p++)
         for (int q = 0; q < p && found; q++)
-            found = is_later_style(plan, p) || is_later_style(plan, q) ||
-                    add_pair(&finder, &plan->painted[p], &plan->painted[q], error);
+            found = is_later_style(shapes, p) || is_later_style(shapes, q) ||
+                    add_pair(&finder, &shapes->painted[p], &shapes->painted[q], error);
     return found;
 }

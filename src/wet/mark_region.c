@@ -18,17 +18,17 @@ int fl_wet_shown_by(const FlRegionPlan *plan, int frame)
 /** The picture before; -1: this is the first. */
 static int before_that(const FlWet *wet, const FlRegionPlan *plan, int frame)
 {
-    const int hold = plan->settings.hold, n = fl_drawing_frames(wet->plan->drawing);
+    const int hold = plan->settings.hold, n = wet->shapes->n_frames;
     if (frame >= hold)
         return frame - hold;
-    return wet->plan->options.loop ? (n - 1) / hold * hold : -1;
+    return wet->shapes->loop ? (n - 1) / hold * hold : -1;
 }
 
 /** Frame `frame` + `ahead`; in a film that is no loop, at most the last one. */
 static int frame_ahead(const FlWet *wet, int frame, int ahead)
 {
-    const int n = fl_drawing_frames(wet->plan->drawing);
-    return wet->plan->options.loop ? (frame + ahead) % n : MIN(frame + ahead, n - 1);
+    const int n = wet->shapes->n_frames;
+    return wet->shapes->loop ? (frame + ahead) % n : MIN(frame + ahead, n - 1);
 }
 
 /** Planes of a region's rectangle. */
@@ -66,7 +66,7 @@ static bool planes_init(Planes *planes, FlRect rect, GError **error)
 /** Around all masks that a region's marks depend on. */
 static FlRect marked_part(const FlWet *wet, const FlRegionPlan *plan, int before, int now)
 {
-    const FlMaskStore *masks = wet->plan->masks;
+    const FlMaskStore *masks = wet->shapes->masks;
     FlRect box = fl_rect_or(fl_mask_store_box(masks, plan->region, before),
                             fl_mask_store_box(masks, plan->region, now));
     for (int a = 1; a <= AHEAD_FRAMES; a++)
@@ -84,7 +84,7 @@ static bool read_ahead(const FlWet *wet, const FlRegionPlan *plan, int now, Plan
     memcpy(planes->ahead, planes->now, n);
     for (int a = 1; a <= AHEAD_FRAMES; a++) {
         const int frame = fl_wet_shown_by(plan, frame_ahead(wet, now, a));
-        if (frame == last || fl_mask_store_same(wet->plan->masks, plan->region, frame, last))
+        if (frame == last || fl_mask_store_same(wet->shapes->masks, plan->region, frame, last))
             continue;
         if (!fl_wet_get_mask(wet, plan->region, frame, planes->rect, planes->touches, error))
             return false;
@@ -285,9 +285,9 @@ bool fl_wet_mark_one(void *data, int m, int thread, GError **error)
     g_array_set_size(marker->stains, 0);
     marker->partner = 1;
     fl_wet_turn_dials(wet, marker, now);
-    const bool shown = fl_region_share(plan, wet->plan->drawing, now) > 0 &&
-                       fl_mask_store_has(wet->plan->masks, plan->region, now);
-    if (!shown || before < 0 || !fl_mask_store_has(wet->plan->masks, plan->region, before)) {
+    const bool shown = fl_region_share(plan, wet->shapes->drawing, now) > 0 &&
+                       fl_mask_store_has(wet->shapes->masks, plan->region, now);
+    if (!shown || before < 0 || !fl_mask_store_has(wet->shapes->masks, plan->region, before)) {
         forget(wet, marker);
         marker->partner = !shown || before < 0;
         return true;
@@ -295,7 +295,7 @@ bool fl_wet_mark_one(void *data, int m, int thread, GError **error)
     if (now != step->frame) // its last picture is shown again, and wets what it wetted
         return true;
     const bool still =
-        fl_mask_store_same(wet->plan->masks, plan->region, before, now) && !step->moved;
+        fl_mask_store_same(wet->shapes->masks, plan->region, before, now) && !step->moved;
     if (still && marker->rests)
         return true;
     return mark_moving(step, marker, before, now, !still, error);

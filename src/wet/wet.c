@@ -20,25 +20,26 @@ static void take_from(FlWet *wet, FlWet *before)
     fl_wet_free(before);
 }
 
-FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], FlWet *before, FlWetMotion motion,
-                  void *data, GError **error)
+FlWet *fl_wet_new(const FlShapes *shapes, const FlWetOptions *options, FlWet *before,
+                  FlWetMotion motion, void *data, GError **error)
 {
-    const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
+    const int width = shapes->width, height = shapes->height;
     const float page_px = (float)MAX(width, height) / FL_WET_PAGE_PX;
     const int cell = MAX((int)(CELL_PX * page_px + 0.5f), 1);
     g_autoptr(FlWet) wet = g_new0(FlWet, 1);
-    *wet = (FlWet){.plan = plan, .motion = motion, .motion_data = data, .cell = cell};
-    memcpy(wet->paper, paper, 3);
+    *wet = (FlWet){.shapes = shapes, .motion = motion, .motion_data = data, .cell = cell};
+    memcpy(wet->paper, options->paper, 3);
+    wet->overrun = (float)options->overrun;
     take_from(wet, before);
     const int columns = (width + cell - 1) / cell, rows = (height + cell - 1) / cell;
     const size_t n = (size_t)columns * (size_t)rows;
-    const double fps = plan->options.fps > 0 ? plan->options.fps : 24;
     wet->sheet.page = (FlRect){0, 0, columns, rows};
     wet->sheet.width = width, wet->sheet.height = height, wet->sheet.cell_px = cell;
     wet->sheet.px = page_px / (float)cell;
-    wet->sheet.stain_time = (float)(plan->options.stain_time * fps / 24);
-    wet->sheet.fibres.seed = fl_key(plan->options.paper_seed, 0x776574);
-    if (!fl_wet_find_camera(plan, &wet->camera, error) || !fl_wet_sheet_init(&wet->sheet, error) ||
+    wet->sheet.stain_time = (float)options->stain_time;
+    wet->sheet.fibres.seed = fl_key(options->seed, 0x776574);
+    if (!fl_wet_find_camera(shapes, options->camera, &wet->camera, error) ||
+        !fl_wet_sheet_init(&wet->sheet, error) ||
         !fl_laid_init(&wet->laid, columns, rows, (float)cell, error) ||
         !(wet->lowest[0] = fl_alloc(n, sizeof(uint16_t), "regions", error)) ||
         !(wet->lowest[1] = fl_alloc(n, sizeof(uint16_t), "regions", error)) ||
@@ -92,7 +93,7 @@ static bool find_lowest(const FlWet *wet, int frame, uint16_t *lowest, GError **
     const FlRect page = wet->sheet.page, px = fl_wet_px_of(wet, page);
     const int c = wet->cell;
     g_autofree uint16_t *full = fl_alloc_unset(fl_rect_pixels(px), sizeof *full, "regions", error);
-    if (!full || !fl_surround_lowest(wet->plan->surround, frame, px, full, error))
+    if (!full || !fl_surround_lowest(wet->shapes->surround, frame, px, full, error))
         return false;
     for (int y = 0; y < page.height; y++)
         for (int x = 0; x < page.width; x++) {
@@ -120,12 +121,12 @@ static float cut_of(const FlWet *wet, int frame)
     for (int m = 0; m < wet->n_markers; m++) {
         const FlMarker *marker = &wet->marker[m];
         const int region = marker->plan->region, shown = fl_wet_shown_by(marker->plan, frame);
-        if (!fl_mask_store_has(wet->plan->masks, region, shown))
+        if (!fl_mask_store_has(wet->shapes->masks, region, shown))
             continue;
         const double area = marker->plan->area_px;
         new += area *(1 - (double)marker->partner), all += area;
     }
-    const FlDrawing *drawing = wet->plan->drawing;
+    const FlDrawing *drawing = wet->shapes->drawing;
     const double page = (double)fl_drawing_width(drawing) * fl_drawing_height(drawing);
     return fl_ease(0.5f, 0.9f, (float)(new / MAX(all, 1))) *
            fl_ease(0.01f, 0.05f, (float)(new / page));
@@ -179,7 +180,7 @@ static bool move_sheet(FlWet *wet, const FlAffine *came, GError **error)
 
 static bool do_step(FlWet *wet, int before, int frame, GError **error)
 {
-    FlWetStep step = {wet, frame, (float)wet->plan->hold, false, FL_AFFINE_NONE};
+    FlWetStep step = {wet, frame, (float)wet->shapes->hold, false, FL_AFFINE_NONE};
     if (!update_lowest(wet, before, frame, error) ||
         !fl_wet_follow_camera(wet, before, frame, &step.came, error) ||
         !move_sheet(wet, &step.came, error))
@@ -192,14 +193,14 @@ static bool do_step(FlWet *wet, int before, int frame, GError **error)
 /** Says if the drawing changes in a frame. */
 static bool is_new(const FlWet *wet, int frame)
 {
-    return frame % wet->plan->hold == 0 && fl_drawing_shown(wet->plan->drawing, frame) == frame;
+    return frame % wet->shapes->hold == 0 && fl_drawing_shown(wet->shapes->drawing, frame) == frame;
 }
 
 /** The frames before the first that is composed. */
 static bool roll_in(FlWet *wet, int frame, GError **error)
 {
-    const int n = fl_drawing_frames(wet->plan->drawing);
-    const int first = wet->plan->options.loop ? frame - wet->known : MAX(frame - wet->known, 0);
+    const int n = wet->shapes->n_frames;
+    const int first = wet->shapes->loop ? frame - wet->known : MAX(frame - wet->known, 0);
     int before = -1;
     for (int f = first; f < frame; f++) {
         const int at = ((f % n) + n) % n;
@@ -217,7 +218,7 @@ bool fl_wet_show(FlWet *wet, GError **error)
 {
     free(wet->layer.rgba);
     const bool shown = fl_wet_sheet_layer(&wet->sheet, wet->paper, &wet->layer, error);
-    wet->layer.ground = wet->plan->ground;
+    wet->layer.ground = wet->shapes->ground;
     return shown;
 }
 

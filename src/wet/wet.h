@@ -4,13 +4,22 @@
 
 #include "wet/wet_data.h"
 
-/** Says if any region of the plan marks the paper. */
-bool fl_wet_wanted(const FlPlan *plan);
+/** The options of wet paper. */
+typedef struct FlWetOptions {
+    uint8_t paper[3];   // on which paint is thought to lie
+    uint64_t seed;      // of the fibres
+    double stain_time;  // frames in which stains fade to a third
+    double overrun;     // px on a page of FL_WET_PAGE_PX that fronts go beyond shapes
+    const char *camera; // the region that carries the paper along, none or auto; NULL: auto
+} FlWetOptions;
 
-/** The plan is borrowed, and its masks are rasterised. paper: on which paint is thought to lie.
+/** Says if any region marks the paper. */
+bool fl_wet_wanted(const FlShapes *shapes);
+
+/** The shapes are borrowed, and their masks are rasterised.
  * before: that of an earlier plan with the same masks and sheet, which it takes over; or NULL. */
-FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], FlWet *before, FlWetMotion motion,
-                  void *data, GError **error);
+FlWet *fl_wet_new(const FlShapes *shapes, const FlWetOptions *options, FlWet *before,
+                  FlWetMotion motion, void *data, GError **error);
 void fl_wet_free(FlWet *wet); // NULL is fine
 
 /** Goes back to before any frame. known: frames before the first one that it is known from,
@@ -38,19 +47,19 @@ bool fl_wet_begun(const FlWet *wet);
  * g_bytes_unref(). Returns: NULL with FL_ERROR_NO_MEMORY. */
 GBytes *fl_wet_save(const FlWet *wet, GError **error);
 
-/** Goes on from a state of the same plan, whose bytes need not be trusted. FL_ERROR_CHANGED. */
+/** Goes on from a state of the same film, whose bytes need not be trusted. FL_ERROR_CHANGED. */
 bool fl_wet_load(FlWet *wet, GBytes *state, GError **error);
 
 /** The marks of the frame as a layer, and where its paint is noted for the next one. */
 const FlStainLayer *fl_wet_layer(const FlWet *wet);
 FlLaid *fl_wet_laid(FlWet *wet);
 
-/** Says if any two regions of the plan are wet together. */
-bool fl_contacts_wanted(const FlPlan *plan);
+/** Says if any two regions are wet together. */
+bool fl_contacts_wanted(const FlShapes *shapes);
 
 /** Finds the contacts of a frame from its masks and those of some frames before; contacts is empty.
  */
-bool fl_contacts_find(FlContacts *contacts, const FlPlan *plan, const FlComposeInput *input,
+bool fl_contacts_find(FlContacts *contacts, const FlShapes *shapes, const FlComposeInput *input,
                       const FlDrawList *draws, int frame, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlWet, fl_wet_free)

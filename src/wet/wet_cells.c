@@ -5,7 +5,7 @@
 
 FlRect fl_wet_px_of(const FlWet *wet, FlRect cells)
 {
-    const FlDrawing *drawing = wet->plan->drawing;
+    const FlDrawing *drawing = wet->shapes->drawing;
     const FlRect page = {0, 0, fl_drawing_width(drawing), fl_drawing_height(drawing)};
     const int c = wet->cell;
     return fl_rect_and((FlRect){c * cells.x, c * cells.y, c * cells.width, c * cells.height}, page);
@@ -47,7 +47,7 @@ bool fl_wet_get_mask(const FlWet *wet, int region, int frame, FlRect rect, uint8
 {
     const FlRect px = fl_wet_px_of(wet, rect);
     g_autofree uint8_t *full = fl_alloc_unset(fl_rect_pixels(px), 1, "a mask", error);
-    if (!full || !fl_mask_store_get(wet->plan->masks, region, frame, px, full, error))
+    if (!full || !fl_mask_store_get(wet->shapes->masks, region, frame, px, full, error))
         return false;
     fl_wet_find_means(wet, full, rect, mask);
     return true;

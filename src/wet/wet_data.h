@@ -3,7 +3,7 @@
 #define FLUIDY_WET_WET_DATA_H
 
 #include "compose/compose_input.h"
-#include "job/plan.h"
+#include "job/region_plan.h"
 #include "wet/marks.h"
 
 typedef struct FlWet FlWet;
@@ -25,8 +25,9 @@ typedef struct FlMarker {
 } FlMarker;
 
 struct FlWet {
-    const FlPlan *plan;
+    const FlShapes *shapes;
     uint8_t paper[3];
+    float overrun; // FlWetOptions
     FlWetMotion motion;
     void *motion_data;
     int known; // frames before the first that is composed
@@ -76,7 +77,7 @@ bool fl_wet_get_motion(const FlWet *wet, int region, int before, int now, FlRect
 bool fl_wet_follow_camera(const FlWet *wet, int before, int frame, FlAffine *came, GError **error);
 
 /** Finds the region that carries the paper along; FL_ERROR_USAGE for an unknown name. */
-bool fl_wet_find_camera(const FlPlan *plan, int *camera, GError **error);
+bool fl_wet_find_camera(const FlShapes *shapes, const char *wanted, int *camera, GError **error);
 
 /** Makes the regions that mark the paper. */
 bool fl_wet_make_markers(FlWet *wet, GError **error);

@@ -128,9 +128,8 @@ static bool header_fits(const State *state, const FlWet *wet)
 {
     const SheetState *sheet = state->sheet;
     const FlRect page = wet->sheet.page;
-    bool fits = sheet->at >= -1 && sheet->at < fl_drawing_frames(wet->plan->drawing) &&
-                lies_in(sheet->wet, page) && are_sane(&sheet->camera_x, 2) &&
-                is_sane(&sheet->paper);
+    bool fits = sheet->at >= -1 && sheet->at < wet->shapes->n_frames && lies_in(sheet->wet, page) &&
+                are_sane(&sheet->camera_x, 2) && is_sane(&sheet->paper);
     for (int m = 0; m < wet->n_markers; m++)
         fits = fits && lies_in(state->marker[m].rect, page) && state->marker[m].n_fronts >= 0 &&
                (size_t)state->marker[m].n_fronts <= fl_rect_pixels(page) &&
@@ -159,7 +158,7 @@ static bool parts_fit(const State *state, const FlWet *wet)
     const size_t n = fl_rect_pixels(state->sheet->wet) * sizeof(FlWetCell) / sizeof(float);
     bool fit = are_sane((const float *)state->cells, n);
     for (size_t p = 0; p < page; p++)
-        fit = fit && wet->laid.region[p] < fl_drawing_regions(wet->plan->drawing);
+        fit = fit && wet->laid.region[p] < fl_drawing_regions(wet->shapes->drawing);
     for (int m = 0; m < wet->n_markers; m++) {
         const FlMarker *marker = &wet->marker[m];
         fit = fit && are_sane((const float *)marker->before.point,
