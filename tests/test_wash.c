@@ -195,7 +195,7 @@ static void each_of_many_fills_stays(void)
     for (int k = 0; k < 8; k++) {
         g_test_message("mean of ln %.3f, of play %.3f", tone[k] / n[k],
                        play[k] / n[k] / FL_PLAY_ONE);
-        g_assert_cmpfloat(shadow[k] / n[k], >, .03);
+        g_assert_cmpfloat(shadow[k] / n[k], >, .01);
         g_assert_cmpfloat(fabs(tone[k] / n[k]), <, .02);
         g_assert_cmpfloat(fabs(play[k] / n[k] / FL_PLAY_ONE), <, .3);
     }
@@ -298,7 +298,7 @@ static void a_limb_carries_its_own(void)
         }
     g_test_message("correlation %.3f along the limb, %.3f on the page", correlation(a, b, n),
                    correlation(a, same, n));
-    g_assert_cmpfloat(correlation(a, b, n), >, .75); // the light does not turn
+    g_assert_cmpfloat(correlation(a, b, n), >, .7); // the light does not turn
 }
 
 static void still_figures_do_not_change(void)

@@ -36,8 +36,9 @@ static void noise_at(uint64_t key, const Places *at, const float cell[2], float 
 {
     float x[FL_NOISE_ROW], y[FL_NOISE_ROW];
     for (int i = 0; i < at->n; i++) {
-        x[i] = at->x[i] / cell[0] + bend * at->bend_x[i];
-        y[i] = at->y[i] / cell[1] + bend * at->bend_y[i];
+        // turned, since noise of a lattice has lines along its axes
+        x[i] = (.8f * at->x[i] - .6f * at->y[i]) / cell[0] + bend * at->bend_x[i];
+        y[i] = (.6f * at->x[i] + .8f * at->y[i]) / cell[1] + bend * at->bend_y[i];
     }
     fl_noise_octaves_row(key, x, y, at->n, octaves, gain, noise);
 }
@@ -75,15 +76,48 @@ static void find_passes(const FlWashField *field, const Places *at, Values value
     }
 }
 
+/* The distance from the drying line at some points, px: that of a level line of noise. */
+static void find_tide(const FlWash *wash, const Places *at, float *tide)
+{
+    static const float wide[2] = {210, 190}, fine[2] = {26, 26};
+    float crinkle[FL_NOISE_ROW];
+    noise_at(fl_key(wash->key, KEY_TIDE), at, wide, .25f, 2, .5f, tide);
+    noise_at(fl_key(wash->key, KEY_TIDE + 100), at, fine, 0, 2, .6f, crinkle);
+    for (int i = 0; i < at->n; i++)
+        tide[i] = (tide[i] + .055f * crinkle[i] - .18f) / .011f;
+}
+
+#define FEATHER_PX 9 // width of the feathers in which paint runs back from a drying line
+
+/* Moves points straight to the drying line, as far as it is near. */
+static void move_to_line(const FlWash *wash, const Places *at, const float *tide, Places *line)
+{
+    float beside[2][FL_NOISE_ROW];
+    for (int k = 0; k < 2; k++) {
+        *line = *at;
+        for (int i = 0; i < at->n; i++)
+            *(k ? &line->y[i] : &line->x[i]) += 6;
+        find_tide(wash, line, beside[k]);
+    }
+    for (int i = 0; i < at->n; i++) {
+        const float dx = (beside[0][i] - tide[i]) / 6, dy = (beside[1][i] - tide[i]) / 6;
+        const float far = fl_clamp(tide[i], -40, 40) / (dx * dx + dy * dy + .1f);
+        line->x[i] = at->x[i] - far * dx, line->y[i] = at->y[i] - far * dy;
+    }
+}
+
+/* Drying lines, whose edges are drawn out into feathers. */
 static void find_tides(const FlWash *wash, const Places *at, Values values)
 {
-    static const float wide[2] = {210, 190}, fine[2] = {26, 26}, place[2] = {120, 120};
-    float crinkle[FL_NOISE_ROW];
-    noise_at(fl_key(wash->key, KEY_TIDE), at, wide, .25f, 2, .5f, values[FL_WASH_TIDE]);
-    noise_at(fl_key(wash->key, KEY_TIDE + 100), at, fine, 0, 2, .6f, crinkle);
+    static const float place[2] = {120, 120}, feather[2] = {FEATHER_PX, FEATHER_PX};
+    float *tide = values[FL_WASH_TIDE], out[FL_NOISE_ROW];
+    Places line;
+    find_tide(wash, at, tide);
+    move_to_line(wash, at, tide, &line);
+    noise_at(fl_key(wash->key, KEY_TIDE + 200), &line, feather, 0, 1, 1, out);
     noise_at(fl_key(wash->key, KEY_TIDES), at, place, 0, 1, 1, values[FL_WASH_TIDES]);
     for (int i = 0; i < at->n; i++) {
-        values[FL_WASH_TIDE][i] = (values[FL_WASH_TIDE][i] + .055f * crinkle[i] - .18f) / .011f;
+        tide[i] += fl_clamp(.3f * tide[i] + 5, 2, 12) * out[i];
         values[FL_WASH_TIDES][i] = fl_smooth((values[FL_WASH_TIDES][i] - .08f) / .35f);
     }
 }
