@@ -448,11 +448,23 @@ static void take_element(Reader *reader, xmlNode *node, const Place *place)
     xmlNodeSetContent(node, NULL);
 }
 
+/** Reads the sheet of HTML's <link rel="stylesheet" href="…">. */
+static void take_link(Reader *reader, const xmlNode *node, const Place *place)
+{
+    g_autoptr(xmlChar) kind = fl_attribute(node, "rel"), href = fl_attribute(node, "href");
+    g_autoptr(xmlChar) media = fl_attribute(node, "media");
+    if (href && xmlStrEqual(kind, (const xmlChar *)"stylesheet") &&
+        fl_css_media_matches(media ? (const char *)media : "", &reader->page))
+        read_file(reader, (const char *)href, place);
+}
+
 static void take_elements(Reader *reader, xmlNode *node, const Place *place)
 {
     for (xmlNode *child = node->children; child; child = child->next)
         if (fl_is(child, "style"))
             take_element(reader, child, place);
+        else if (child->type == XML_ELEMENT_NODE && xmlStrEqual(child->name, (xmlChar *)"link"))
+            take_link(reader, child, place);
         else if (child->type == XML_ELEMENT_NODE)
             take_elements(reader, child, place);
 }

@@ -374,13 +374,10 @@ static bool visit_node(Visit *visit, xmlNode *node, int depth, GError **error)
     return true;
 }
 
-xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GError **error)
+xmlDoc *fl_document_parse(const char *text, size_t bytes, const char *path, int number,
+                          FlWarnings *warnings, GError **error)
 {
-    g_autofree char *data = NULL;
-    gsize bytes = 0;
-    if (!read_bytes(path, &data, &bytes, error))
-        return NULL;
-    g_autoptr(xmlDoc) doc = parse_leniently(data, bytes, path, number, warnings, error);
+    g_autoptr(xmlDoc) doc = parse_leniently(text, bytes, path, number, warnings, error);
     if (!doc)
         return NULL;
     xmlNode *root = xmlDocGetRootElement(doc);
@@ -399,6 +396,15 @@ xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GEr
     g_autoptr(GHashTable) entities = g_hash_table_new_full(NULL, NULL, NULL, g_free);
     Visit visit = {path, number, warnings, root, 0, 0, entities};
     return visit_node(&visit, root, 1, error) ? g_steal_pointer(&doc) : NULL;
+}
+
+xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GError **error)
+{
+    g_autofree char *data = NULL;
+    gsize bytes = 0;
+    return read_bytes(path, &data, &bytes, error)
+               ? fl_document_parse(data, bytes, path, number, warnings, error)
+               : NULL;
 }
 
 char *fl_document_text(xmlDoc *doc, size_t *bytes)

@@ -21,6 +21,10 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlChar, xmlFree)
  */
 xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GError **error);
 
+/** Likewise reads a document from its text; `path` names it in messages. */
+xmlDoc *fl_document_parse(const char *text, size_t bytes, const char *path, int number,
+                          FlWarnings *warnings, GError **error);
+
 /** Returns: true if a text of so many bytes, or a limit that was raised, is beyond what libxml2 and
  * librsvg take by themselves. */
 bool fl_document_is_huge(size_t bytes);

@@ -2,13 +2,17 @@
 
 #include "base/file.h"
 #include "base/limits.h"
+#include "svg/cascade.h"
+#include "svg/css_value.h"
 #include "svg/reference.h"
 #include "svg/webp.h"
 #include <gdk-pixbuf/gdk-pixbuf.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define BLOCK 4096 // bytes; the first usually has the size
+#define BLOCK 4096    // bytes; the first usually has the size
+#define ENLARGED 1000 // px, of the longer side of a drawing in a drawing
 
 typedef struct Check {
     const char *path;
@@ -76,23 +80,95 @@ static void replace_webp(const Check *check, xmlNode *node, xmlAttr *a, const ch
              "is animated or damaged, or this build reads no WebP, and is left out");
 }
 
+/** The text behind %-escapes; a % without digits stays, as in a browser. */
+static char *unescape(const char *text)
+{
+    GString *out = g_string_new(NULL);
+    for (; *text; text++) {
+        const bool escape = *text == '%' && g_ascii_isxdigit(text[1]) && g_ascii_isxdigit(text[2]);
+        g_string_append_c(
+            out, escape ? (char)(g_ascii_xdigit_value(text[1]) * 16 + g_ascii_xdigit_value(text[2]))
+                        : *text);
+        text += escape ? 2 : 0;
+    }
+    return g_string_free(out, FALSE);
+}
+
+/** Gives a drawing many pixels, which librsvg makes before it scales it to its place. */
+static void enlarge(xmlNode *root)
+{
+    g_autoptr(xmlChar) width = fl_attribute(root, "width"), height = fl_attribute(root, "height");
+    const double sides[2] = {width ? g_ascii_strtod((char *)width, NULL) : 0,
+                             height ? g_ascii_strtod((char *)height, NULL) : 0};
+    g_autoptr(xmlChar) view = fl_attribute(root, "viewBox");
+    g_auto(GStrv) box = g_regex_split_simple("[ ,\t\r\n]+", view ? (char *)view : "", 0, 0);
+    const bool has_box = g_strv_length(box) == 4, has_sides = sides[0] > 0 && sides[1] > 0;
+    const double larger = fmax(has_sides ? sides[0]
+                               : has_box ? g_ascii_strtod(box[2], NULL)
+                                         : 0,
+                               has_sides ? sides[1]
+                               : has_box ? g_ascii_strtod(box[3], NULL)
+                                         : 0);
+    if (!(larger > 0) || larger >= ENLARGED)
+        return;
+    g_autofree char *whole = g_strdup_printf("0 0 %s %s", width, height);
+    if (!has_box)
+        xmlSetProp(root, (xmlChar *)"viewBox", (xmlChar *)whole);
+    for (int i = 0; i < 2; i++) {
+        const double side = has_sides ? sides[i] : g_ascii_strtod(box[2 + i], NULL);
+        g_autofree char *text = fl_css_number_text(side * ENLARGED / larger);
+        xmlSetProp(root, (xmlChar *)(i ? "height" : "width"), (xmlChar *)text);
+    }
+}
+
+/** Reads a drawing in the drawing as any other: librsvg gets its plain SVG. */
+static bool compute_drawing(const Check *check, xmlNode *node, xmlAttr *a, const char *text,
+                            gsize bytes, GError **error)
+{
+    g_autoptr(xmlDoc) doc =
+        fl_document_parse(text, bytes, check->path, check->number, check->warnings, error);
+    if (!doc)
+        return false;
+    fl_cascade(doc, check->path, check->number, NAN, NULL, check->files, check->warnings);
+    fl_document_mend(doc);
+    enlarge(xmlDocGetRootElement(doc));
+    size_t n = 0;
+    g_autofree char *plain = fl_document_text(doc, &n);
+    g_autofree char *coded = g_base64_encode((guchar *)plain, n);
+    g_autofree char *href = g_strconcat("data:image/svg+xml;base64,", coded, NULL);
+    xmlSetNsProp(node, a->ns, a->name, (xmlChar *)href);
+    return true;
+}
+
 /** An image in the drawing itself: a wrong label, which librsvg would believe, is put right. */
 static bool check_data(const Check *check, xmlNode *node, xmlAttr *a, const char *href,
                        GError **error)
 {
     const char *comma = strchr(href, ',');
     int size[2] = {0};
-    if (!comma || comma - href < 7 || strncmp(comma - 7, ";base64", 7) != 0)
+    const bool coded = comma && comma - href >= 7 && strncmp(comma - 7, ";base64", 7) == 0;
+    const bool drawing = comma && g_str_has_prefix(href, "data:image/svg");
+    if (!coded && !drawing)
         return true; // librsvg shows it as text or not at all
     gsize bytes = 0;
-    g_autofree guint8 *data = g_base64_decode(comma + 1, &bytes);
+    g_autofree guint8 *data =
+        coded ? g_base64_decode(comma + 1, &bytes) : (guint8 *)unescape(comma + 1);
+    if (!coded)
+        bytes = strlen((char *)data);
+    if (drawing) {
+        g_autoptr(GError) problem = NULL;
+        const bool good = compute_drawing(check, node, a, (char *)data, bytes, &problem);
+        if (!good)
+            warn(check, node, href, "cannot be read and is left out");
+        return true;
+    }
     const char *kind = kind_of(data, bytes);
     size_of_data(data, bytes, size);
     if (!check_pixels(check, size[0], size[1], error))
         return false;
     if (g_strcmp0(kind, "image/webp") == 0)
         replace_webp(check, node, a, href, data, bytes);
-    else if (size[0] == 0 && !g_str_has_prefix(href, "data:image/svg"))
+    else if (size[0] == 0)
         warn(check, node, href, "cannot be read and is left out");
     else if (kind && !g_str_has_prefix(href + 5, kind)) {
         g_autofree char *mended = g_strdup_printf("data:%s;base64%s", kind, comma);

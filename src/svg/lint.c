@@ -183,20 +183,28 @@ static void check_text(const Lint *lint, const xmlNode *node)
         warn(lint, node, "textLength is left out: the text has its own width");
 }
 
-/** Warns of a clip path that is itself clipped. */
-static void check_clip(const Lint *lint, const xmlNode *node)
+/** Warns of values that librsvg leaves out. */
+static void check_values(const Lint *lint, const xmlNode *node)
 {
+    static const char *const sharp[] = {"pixelated", "crisp-edges", NULL};
     const bool inside = node->parent && fl_is(node->parent, "clipPath");
-    g_autofree char *clip =
-        inside || fl_is(node, "clipPath") ? fl_property(node, "clip-path") : NULL;
-    if (clip && strcmp(clip, "none") != 0)
-        warn(lint, node, "the clip of a clip path is left out");
+    const bool gradient = g_str_has_suffix((const char *)node->name, "Gradient");
+    const char *name = gradient               ? "color-interpolation"
+                       : fl_is(node, "image") ? "image-rendering"
+                                              : "clip-path";
+    g_autofree char *value = fl_property(node, name);
+    if (value && gradient && strcmp(value, "linearRGB") == 0)
+        warn(lint, node, "color-interpolation: linearRGB is left out: the gradient mixes in sRGB");
+    else if (value && fl_is(node, "image") && g_strv_contains(sharp, value))
+        warn(lint, node, "image-rendering is left out: the image is smoothed");
+    else if (value && inside && strcmp(value, "none") != 0)
+        warn(lint, node, "the clip of a shape in a clip path is left out");
 }
 
 static void lint_node(const Lint *lint, xmlNode *node)
 {
     check_text(lint, node);
-    check_clip(lint, node);
+    check_values(lint, node);
     if (fl_is(node, "foreignObject"))
         check_foreign(lint, node);
     check_references(lint, node);

@@ -74,10 +74,13 @@ static xmlChar *take_reference(xmlNode *node)
     return href;
 }
 
+/** Returns: true if one of the languages is the user's; without a locale it is English. */
 static bool speaks(const char *languages)
 {
+    static const char *const english[] = {"en", NULL};
     g_auto(GStrv) asked = g_strsplit(languages, ",", -1);
     const gchar *const *spoken = g_get_language_names();
+    spoken = *spoken[0] == 'C' ? english : spoken;
     for (int i = 0; asked[i]; i++) {
         const char *language = g_strstrip(asked[i]);
         const size_t n = strcspn(language, "-_");

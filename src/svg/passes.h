@@ -24,6 +24,13 @@ void fl_lint(xmlDoc *doc, const char *path, int number, FlWarnings *warnings);
 bool fl_images_check(xmlDoc *doc, const char *path, int number, GPtrArray *files,
                      FlWarnings *warnings, GError **error);
 
+/**
+ * Rewrites what librsvg leaves out and a browser draws into what it draws: <feDropShadow>, clips of
+ * clip paths, gradients of no length and lists of points that end in the middle of a pair;
+ * languages in a <switch> are resolved, and a <mask> has no mask.
+ */
+void fl_document_mend(xmlDoc *doc);
+
 /* ---- filters that read the backdrop, as old versions of Inkscape wrote them ------------------ */
 
 /**

@@ -1,0 +1,215 @@
+#include "svg/passes.h"
+
+#include "svg/css_scan.h"
+#include "svg/effects.h"
+#include "svg/normalise.h"
+#include <math.h>
+#include <string.h>
+
+#define MOST_CLIPS 16 // of clip paths that clip each other
+
+static void set(xmlNode *node, const char *name, const char *value)
+{
+    xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)value);
+}
+
+static xmlNode *element_beside(xmlNode *node, bool before)
+{
+    do
+        node = before ? node->prev : node->next;
+    while (node && node->type != XML_ELEMENT_NODE);
+    return node;
+}
+
+/* ---- drop shadows ---------------------------------------------------------------------------- */
+
+/** The name of what a filter's step reads, to be freed; a step before it is named if it must be. */
+static char *name_input(xmlNode *step, int number)
+{
+    xmlNode *before = element_beside(step, true);
+    xmlChar *in = fl_attribute(step, "in");
+    if (!in && before)
+        in = fl_attribute(before, "result");
+    char *name = in       ? g_strdup((char *)in)
+                 : before ? g_strdup_printf("fl-before-%d", number)
+                          : g_strdup("SourceGraphic");
+    if (!in && before)
+        set(before, "result", name);
+    xmlFree(in);
+    return name;
+}
+
+/** Adds a step of a shadow before it, with the shadow's own attributes. */
+static xmlNode *add_step(xmlNode *shadow, const char *name)
+{
+    static const char *const not_its[] = {"in", "result", "x", "y", "width", "height", "id"};
+    xmlNode *step = xmlDocCopyNode(shadow, shadow->doc, 2);
+    xmlNodeSetName(step, (const xmlChar *)name);
+    for (size_t i = 0; i < G_N_ELEMENTS(not_its); i++)
+        xmlUnsetProp(step, (const xmlChar *)not_its[i]);
+    return xmlAddPrevSibling(shadow, step);
+}
+
+/** Makes <feDropShadow>, which librsvg lacks, the steps that it stands for [Filter Effects 1]. */
+static void mend_shadow(xmlNode *node, int number)
+{
+    static const char *const lengths[] = {"dx", "dy", "stdDeviation"};
+    g_autofree char *in = name_input(node, number);
+    g_autofree char *place = g_strdup_printf("fl-shadow-%d", number);
+    for (size_t i = 0; i < G_N_ELEMENTS(lengths); i++)
+        if (!xmlHasProp(node, (const xmlChar *)lengths[i]))
+            set(node, lengths[i], "2");
+    set(add_step(node, "feGaussianBlur"), "in", in);
+    set(add_step(node, "feOffset"), "result", place);
+    add_step(node, "feFlood");
+    xmlNode *cut = add_step(node, "feComposite");
+    set(cut, "operator", "in");
+    set(cut, "in2", place);
+    xmlNodeSetName(node, (const xmlChar *)"feMerge");
+    xmlNodeSetContent(node, NULL);
+    xmlNewChild(node, node->ns, (const xmlChar *)"feMergeNode", NULL);
+    set(xmlNewChild(node, node->ns, (const xmlChar *)"feMergeNode", NULL), "in", in);
+}
+
+/* ---- gradients without length ---------------------------------------------------------------- */
+
+static double share_of(const xmlNode *node, const char *name, double missing)
+{
+    g_autoptr(xmlChar) text = fl_attribute(node, name);
+    const double value = text ? g_ascii_strtod((char *)text, NULL) : missing;
+    return text && strchr((char *)text, '%') ? value / 100 : value;
+}
+
+/** A gradient of no length is the colour of its last stop. */
+static void mend_gradient(xmlNode *node)
+{
+    g_autofree char *template = fl_foreign_attribute(node, "href");
+    const bool linear = fl_is(node, "linearGradient");
+    const double across = share_of(node, "x2", 1) - share_of(node, "x1", 0);
+    const double down = share_of(node, "y2", 0) - share_of(node, "y1", 0);
+    const bool long_enough = linear ? across != 0 || down != 0 : !(share_of(node, "r", .5) <= 0);
+    if (long_enough || template || xmlHasProp(node, (const xmlChar *)"href"))
+        return;
+    if (!linear) // librsvg draws nothing without a radius
+        set(node, "r", "1");
+    xmlNode *last = node->last;
+    while (last && !fl_is(last, "stop"))
+        last = last->prev;
+    for (xmlNode *stop = node->children, *next; stop && last; stop = next) {
+        next = stop->next;
+        if (stop == last)
+            continue;
+        xmlUnlinkNode(stop);
+        xmlFreeNode(stop);
+    }
+}
+
+/* ---- lists of points ------------------------------------------------------------------------- */
+
+/** Cuts a list of points after its last whole pair, up to which a browser draws. */
+static void mend_points(xmlNode *node)
+{
+    g_autoptr(xmlChar) text = fl_attribute(node, "points");
+    char *s = (char *)text, *good = s, *end;
+    int n = 0;
+    while (s && isfinite(g_ascii_strtod(s, &end)) && end != s) {
+        s = end;
+        if (++n % 2 == 0)
+            good = end;
+        s += strspn(s, " \t\r\n\f");
+        s += *s == ',';
+    }
+    if (!s || (!*s && n % 2 == 0))
+        return;
+    *good = '\0';
+    set(node, "points", (char *)text);
+}
+
+/* ---- clip paths that are clipped ------------------------------------------------------------- */
+
+/** The <clipPath> of an element; NULL without one. */
+static xmlNode *clip_of(const xmlNode *node, GHashTable *ids)
+{
+    g_autofree char *value = fl_property(node, "clip-path");
+    g_autofree char *reference = value ? fl_css_string_or_url(value) : NULL;
+    xmlNode *clip = reference && *reference == '#' ? g_hash_table_lookup(ids, reference + 1) : NULL;
+    return clip && fl_is(clip, "clipPath") ? clip : NULL;
+}
+
+/** Puts an element into a group that has the clip of its clip path, and is referred to. */
+static xmlNode *wrap(xmlNode *node, const xmlNode *clip)
+{
+    static const char *const outer[] = {"id", "transform"};
+    g_autofree char *value = fl_property(clip, "clip-path");
+    g_autofree char *blend = fl_property(node, "mix-blend-mode");
+    g_autofree char *declarations =
+        g_strdup_printf("clip-path:%s;mix-blend-mode:%s", value, blend ? blend : "normal");
+    xmlNode *group = xmlNewDocNode(node->doc, node->ns, (const xmlChar *)"g", NULL);
+    fl_declare(group, declarations);
+    if (blend)
+        fl_declare(node, "mix-blend-mode:normal");
+    for (size_t i = 0; i < G_N_ELEMENTS(outer); i++) {
+        g_autoptr(xmlChar) text = fl_attribute(node, outer[i]);
+        if (text)
+            set(group, outer[i], (char *)text);
+        xmlUnsetProp(node, (const xmlChar *)outer[i]);
+    }
+    xmlReplaceNode(node, group);
+    xmlAddChild(group, node);
+    return group;
+}
+
+/** librsvg leaves the clip of a clip path out: a group around what is clipped has it instead. */
+static void mend_clip(xmlNode *node, GHashTable *ids)
+{
+    const xmlNode *clip = clip_of(node, ids);
+    for (int depth = 0; clip && clip_of(clip, ids) && depth < MOST_CLIPS; depth++) {
+        node = wrap(node, clip);
+        clip = clip_of(node, ids);
+    }
+}
+
+/* ---- words that librsvg does not know -------------------------------------------------------- */
+
+static void mend_words(xmlNode *node)
+{
+    if (fl_is(node, "mask") && fl_is_set(node, "mask")) // which no browser applies
+        fl_declare(node, "mask:none");
+    g_autofree char *display = fl_property(node, "display");
+    if (display && strcmp(display, "contents") == 0) { // no box, no effects
+        fl_declare(node, "opacity:1;filter:none;mask:none;clip-path:none;mix-blend-mode:normal");
+        xmlUnsetProp(node, (const xmlChar *)"transform");
+    }
+    if (fl_is(node->parent, "switch") && fl_is_eligible(node))
+        xmlUnsetProp(node, (const xmlChar *)"systemLanguage");
+}
+
+/* ---- the document ---------------------------------------------------------------------------- */
+
+static void mend(xmlNode *node, GHashTable *ids, int *n_shadows)
+{
+    static const char *const gradients[] = {"linearGradient", "radialGradient", NULL};
+    static const char *const with_points[] = {"polygon", "polyline", NULL};
+    if (fl_is(node, "feDropShadow"))
+        mend_shadow(node, (*n_shadows)++);
+    else if (fl_is_one_of(node, gradients))
+        mend_gradient(node);
+    else if (fl_is_one_of(node, with_points))
+        mend_points(node);
+    for (xmlNode *child = node->children, *next; child; child = next) {
+        next = child->next;
+        if (child->type != XML_ELEMENT_NODE)
+            continue;
+        mend_words(child);
+        mend(child, ids, n_shadows);
+        if (!fl_is(child, "clipPath") && !fl_is(node, "clipPath"))
+            mend_clip(child, ids);
+    }
+}
+
+void fl_document_mend(xmlDoc *doc)
+{
+    g_autoptr(GHashTable) ids = fl_document_ids(doc);
+    int n_shadows = 0;
+    mend(xmlDocGetRootElement(doc), ids, &n_shadows);
+}
