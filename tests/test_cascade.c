@@ -196,6 +196,8 @@ static void values_become_those_of_svg_1(void)
         {"style='rotate:90deg;transform-origin:center'", "transform", "matrix(0 1 -1 0 100 0)"},
         {"style='scale:2;translate:3px 4px'", "transform", "matrix(2 0 0 2 3 4)"},
         {"style='transform:rotateX(60deg)'", "transform", "matrix(1 0 0 0.5 0 0)"},
+        {"style='transform:rotateY(90deg) rotateX(-90deg)'", "transform", "matrix(0 0 -1 0 0 0)"},
+        {"style='transform:perspective(4px) translateZ(2px)'", "transform", "matrix(2 0 0 2 0 0)"},
         {"transform='scale(2)' transform-origin='10 20'", "transform", "matrix(2 0 0 2 -10 -20)"},
         {"transform='rotate(5)'", "transform", "rotate(5)"},
         {"transform='scale(2)' style='transform:none'", "transform", "matrix(1 0 0 1 0 0)"},
@@ -210,6 +212,8 @@ static void values_become_those_of_svg_1(void)
         {"d='M0 0h9v9z' style='clip-path:circle(2px)'", "clip-path", "url(#fl-clip-0)"},
         {"style='filter:blur(1px) invert(1)'", "filter", "blur(1px) url(#fl-filter-0)"},
         {"style='mask:url(#m) luminance'", "mask", "url(#m)"},
+        {"style='mask-image:url(#m)'", "mask", "url(#m)"},
+        {"style='stroke-width:round(down, 17px, 5px)'", "stroke-width", "15"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(values); i++) {
         g_autofree char *content = g_strdup_printf("<path id='a' %s/>", values[i][0]);
@@ -249,6 +253,9 @@ static void colours_are_those_of_a_browser(void)
         {"color-mix(in hsl longer hue, red, lime)", "rgb(0, 0, 255)"},
         {"color-mix(in hsl, color(srgb 2 0 0), color(srgb 2 0 0))", "rgb(255, 0, 0)"},
         {"light-dark(red, blue)", "rgb(255, 0, 0)"},
+        {"rgb(from #ff8000 calc(r / 5) g 9 / 50%)", "rgba(51, 128, 9, 0.5)"},
+        {"hsl(from red calc(h + 120) s l)", "rgb(0, 255, 0)"},
+        {"oklch(from rgb(0 128 0 / .2) l c h)", "rgba(0, 128, 0, 0.2)"},
         {"CanvasText", "rgb(0, 0, 0)"},
         {"#12345678", "#12345678"},
         {"url(#a) RED", "url(#a) rgb(255, 0, 0)"},
@@ -322,13 +329,35 @@ static void what_use_shows_has_the_variables_of_use(void)
     g_assert_cmpint(fl_warnings_count(warnings), ==, 1); // it shows itself
 }
 
+/** What librsvg leaves out and a browser draws. */
+static void gaps_of_librsvg_are_filled(void)
+{
+    assert_value("<polygon id='a' points='0 0 9,0 9 9 5'/>", "points", "0 0 9,0 9 9");
+    assert_value("<clipPath id='e'/><clipPath id='c' clip-path='url(#e)'/>"
+                 "<path id='a' transform='scale(2)' clip-path='url(#c)'/>",
+                 "clip-path", "url(#e)"); // of the group around
+    assert_value("<g id='a' opacity='.5' style='display:contents'><path/></g>", "opacity", "1");
+    assert_value("<use id='a' style='width:9px'/>", "width", "");
+    g_autoptr(FlSvg) svg =
+        open_svg_of("<filter><feFlood/><feDropShadow dx='1' result='r'/></filter>"
+                    "<linearGradient x2='0'><stop offset='.123'/><stop/></linearGradient>"
+                    "<image href='data:image/svg+xml,%3csvg xmlns=\"http://www.w3.org/2000/svg\" "
+                    "width=\"2\" height=\"1\"/%3e'/>");
+    size_t bytes = 0;
+    g_autofree char *text = fl_document_text(fl_svg_document(svg), &bytes);
+    g_assert_nonnull(strstr(text, "<feMerge dx=\"1\" result=\"r\""));
+    g_assert_nonnull(strstr(text, "<feMergeNode in=\"fl-before-0\"/>"));
+    g_assert_null(strstr(text, ".123"));
+    g_assert_nonnull(strstr(text, "svg+xml;base64,"));
+}
+
 static void each_kind_that_is_left_out_is_told_once(void)
 {
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
     g_free(computed(
         "<style>path{backdrop-filter:blur(1px);fill:nonsense;-webkit-foo:1;cursor:help}"
         ":has(a){fill:red}</style><path style='backdrop-filter:none'/><path id='a' d='M0 0h1' "
-        "stroke='rgb(from red r g b)' style='mix-blend-mode:plus-lighter;word-spacing:1px'/>",
+        "stroke='rgb(from 1 r g b)' style='mix-blend-mode:plus-lighter;word-spacing:1px'/>",
         "a", "fill", warnings));
     g_assert_cmpint(fl_warnings_count(warnings), ==, 6);
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, ":has(a)"));
@@ -367,6 +396,7 @@ int main(int argc, char **argv)
     TEST(colours_are_those_of_a_browser);
     TEST(media_ask_about_a_screen);
     TEST(what_use_shows_has_the_variables_of_use);
+    TEST(gaps_of_librsvg_are_filled);
     TEST(each_kind_that_is_left_out_is_told_once);
     TEST(hostile_sheets_come_to_an_end);
     return g_test_run();

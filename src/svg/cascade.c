@@ -57,12 +57,14 @@ static void warn(Cascade *c, const char *name, const char *value, const char *wh
 
 /* ---- declared values ------------------------------------------------------------------------- */
 
-/** The property that a name of WebKit stands for. */
-static const char *without_vendor(const char *name)
+/** The property that a name of WebKit stands for, or one that is a part of another. */
+static const char *usual_name(const char *name, const char *value)
 {
     static const char *const same[] = {
         "transform", "transform-origin", "transform-box", "clip-path", "mask", "filter", NULL};
     const char *plain = g_str_has_prefix(name, "-webkit-") ? name + 8 : name;
+    if (strcmp(plain, "mask-image") == 0 && g_str_has_prefix(value, "url("))
+        return g_intern_static_string("mask");
     return plain != name && g_strv_contains(same, plain) ? g_intern_string(plain) : name;
 }
 
@@ -107,7 +109,7 @@ static void declare_every_property(Cascade *c, GArray *values, const FlCssDeclar
 /** Takes a declaration over one of lower priority. */
 static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d)
 {
-    const char *name = without_vendor(d->name);
+    const char *name = usual_name(d->name, d->value);
     if (strcmp(name, "all") == 0) {
         declare_every_property(c, values, d);
         return;
@@ -582,7 +584,7 @@ static void apply(Cascade *c, xmlNode *node, const Value *v, const Style *style,
         fl_css_effects_set(effects, v->name, g_steal_pointer(&value));
         break;
     case FL_CSS_GEOMETRY:
-        if (strcmp(value, "inherit") != 0)
+        if (strcmp(value, "inherit") != 0 && !(fl_is(node, "use") && strlen(v->name) > 1))
             set_attribute(node, v->name, strcmp(value, "auto") == 0 ? "" : value);
         break;
     default:
@@ -668,8 +670,10 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
         if (child->type == XML_ELEMENT_NODE)
             visit(c, child, &style);
     const char *left_out = fl_css_effects_apply(&effects, node, &style.units, &c->n_clips);
+    const char *told = left_out ? fl_css_effects_get(&effects, left_out) : NULL;
     if (left_out)
-        warn(c, left_out, fl_css_effects_get(&effects, left_out), "cannot be drawn");
+        warn(c, left_out, told ? told : fl_css_effects_get(&effects, "transform"),
+             "cannot be drawn");
     g_clear_pointer(&style.variables, g_hash_table_unref);
 }
 

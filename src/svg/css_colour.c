@@ -257,6 +257,53 @@ static bool from_function(const char *name, char **part, Rgba *colour)
     return true;
 }
 
+/** The components of a colour in the space of a function, named by its letters; false if it takes
+ * no colour to begin with. */
+static bool to_function(const char *name, const Rgba *from, double v[3])
+{
+    double lab[3];
+    if (strcmp(name, "rgb") == 0)
+        for (int i = 0; i < 3; i++)
+            v[i] = from->c[i] * 255;
+    else if (strcmp(name, "hsl") == 0) {
+        to_hsl(from->c, lab);
+        v[0] = lab[2], v[1] = lab[1] * 100, v[2] = lab[0] * 100;
+    } else if (strcmp(name, "oklab") == 0 || strcmp(name, "oklch") == 0) {
+        to_oklab(from->c, lab);
+        name[3] == 'c' ? to_polar(lab, v) : (void)memcpy(v, lab, sizeof lab);
+    } else
+        return false;
+    return true;
+}
+
+/** Writes the numbers of another colour for their names: "from red calc(r / 2) g b" is
+ * "calc(255 / 2) 0 0 / 1". Returns: NULL if that cannot be done; to be freed. */
+static char *without_origin(const char *name, const char *arguments, int depth)
+{
+    g_auto(GStrv) part = fl_css_split(arguments, ' ');
+    Rgba from;
+    double v[4];
+    if (g_strv_length(part) < 3 || !read_colour(part[1], &from, depth + 1) ||
+        !to_function(name, &from, v))
+        return NULL;
+    const char *letters = name + strlen(name) - 3;
+    g_autofree char *rest = g_strjoinv(" ", part + 2);
+    GString *out = g_string_new(NULL);
+    v[3] = from.alpha;
+    for (const char *s = rest; *s;) {
+        const size_t n = MAX(fl_css_identifier(s), 1);
+        const char *letter = n == 1 ? strchr(letters, *s) : NULL;
+        const bool alpha = n == 5 && g_str_has_prefix(s, "alpha");
+        g_autofree char *number =
+            letter || alpha ? fl_css_number_text(v[letter ? letter - letters : 3]) : NULL;
+        g_string_append_len(out, number ? number : s, number ? -1 : (gssize)n);
+        s += n;
+    }
+    if (!strchr(rest, '/'))
+        g_string_append_printf(out, " / %g", from.alpha);
+    return g_string_free(out, FALSE);
+}
+
 static bool from_color(char **part, Rgba *colour)
 {
     double v[3] = {0};
@@ -417,7 +464,11 @@ static bool read_colour(const char *text, Rgba *colour, int depth)
     g_auto(GStrv) schemes = strcmp(name, "light-dark") == 0 ? fl_css_split(arguments, ',') : NULL;
     if (schemes)
         return schemes[0] && read_colour(schemes[0], colour, depth + 1);
-    g_auto(GStrv) part = components(arguments, &colour->alpha);
+    const bool relative = g_str_has_prefix(arguments, "from ");
+    g_autofree char *numbers = relative ? without_origin(name, arguments, depth) : NULL;
+    if (relative && !numbers)
+        return false;
+    g_auto(GStrv) part = components(relative ? numbers : arguments, &colour->alpha);
     return part && (strcmp(name, "color") == 0 ? from_color(part, colour)
                                                : from_function(name, part, colour));
 }

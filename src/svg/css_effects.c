@@ -95,14 +95,21 @@ static bool own_box(const xmlNode *node, const char *kind, const FlCssUnits *uni
 
 /* ---- transforms ------------------------------------------------------------------------------ */
 
-/** The box that percentages and the origin refer to [CSS Transforms 1 §5]. */
+static bool is_root(const xmlNode *node)
+{
+    return !node->parent || node->parent->type != XML_ELEMENT_NODE;
+}
+
+/** The box that percentages and the origin refer to [CSS Transforms 1 §5]; the page of the root. */
 static FlCssBox reference_box(const FlCssEffects *effects, const xmlNode *node,
                               const FlCssUnits *units)
 {
     static const char *const own[] = {"fill-box", "content-box", "stroke-box", "border-box", NULL};
     g_autofree char *kind = value_or_attribute(effects, node, "transform-box");
     FlCssBox box = {0, 0, units->width, units->height};
-    if (kind && g_strv_contains(own, kind))
+    if (is_root(node))
+        box = (FlCssBox){0, 0, units->page_width, units->page_height};
+    else if (kind && g_strv_contains(own, kind))
         own_box(node, kind, units, &box);
     return box;
 }
@@ -131,7 +138,7 @@ static bool multiply_property(FlAffine *all, const char *function, const char *v
         text = g_strdup_printf("%s(%s%s%s)", function, part[0], n > 1 ? "," : "",
                                n > 1 ? part[1] : "");
     }
-    if (!fl_affine_parse_css(text, units, &one))
+    if (!fl_affine_parse_css(text, units, &one, NULL))
         return false;
     multiply(all, &one);
     return true;
@@ -190,19 +197,22 @@ static const char *apply_transform(const FlCssEffects *effects, xmlNode *node,
     const char *translate = value_of(effects, "translate"), *rotate = value_of(effects, "rotate");
     const char *scale = value_of(effects, "scale");
     const bool moves = css || translate || rotate || scale || value_of(effects, "offset-path") ||
-                       (attribute && origin_text);
+                       (attribute && (origin_text || is_root(node)));
     if (!moves)
         return NULL;
+    if (!origin_text && is_root(node))
+        origin_text = g_strdup("center");
     const FlCssBox box = reference_box(effects, node, units);
     FlCssUnits in_box = *units;
     in_box.width = box.width, in_box.height = box.height;
     FlPoint origin = {box.x, box.y};
+    bool flat = true;
     const bool bad_origin = origin_text && !fl_css_position(origin_text, &in_box, box, &origin);
     FlAffine all = {1, 0, 0, 1, origin.x, origin.y}, own = FL_AFFINE_NONE;
     const FlAffine back = {1, 0, 0, 1, -origin.x, -origin.y};
     if (attribute && !fl_affine_parse((const char *)attribute, &own))
         return NULL; // librsvg decides
-    if (css && *css && !fl_affine_parse_css(css, &in_box, &own))
+    if (css && *css && !fl_affine_parse_css(css, &in_box, &own, &flat))
         return "transform";
     if (!multiply_property(&all, "translate", translate, &in_box))
         return "translate";
@@ -215,7 +225,7 @@ static const char *apply_transform(const FlCssEffects *effects, xmlNode *node,
     multiply(&all, &own);
     multiply(&all, &back);
     set_matrix(node, &all);
-    return bad_origin ? "transform-origin" : NULL;
+    return bad_origin ? "transform-origin" : flat ? NULL : "perspective";
 }
 
 /* ---- clips, backgrounds, dashes -------------------------------------------------------------- */
@@ -375,7 +385,7 @@ static const char *apply_background(const FlCssEffects *effects, xmlNode *node,
 {
     const char *name = value_of(effects, "background-color") ? "background-color" : "background";
     const char *value = value_of(effects, name);
-    const bool root = !node->parent || node->parent->type != XML_ELEMENT_NODE;
+    const bool root = is_root(node);
     g_autofree char *colour = value && root ? fl_css_colour(value) : NULL;
     if (!value || !root || (colour && strcmp(colour, "transparent") == 0))
         return NULL;

@@ -298,26 +298,63 @@ static char *round_shape(const char *arguments, bool circle, const FlCssUnits *u
     return ellipse_text(c, r[0], r[1]);
 }
 
-static char *rounded_text(double x, double y, double w, double h, double rx, double ry)
+/** A rectangle whose corners have radii across and down, clockwise from the top left. */
+static char *rounded_text(FlCssBox box, const double across[4], const double down[4])
 {
-    g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
-    g_autoptr(GArray) cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic));
-    FlPen pen = {.subpath = subpath, .cubic = cubic};
-    fl_pen_rect(&pen, x, y, w, h, CLAMP(rx, 0, w / 2), CLAMP(ry, 0, h / 2));
+    static const int step[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}}; // along the side after it
     GString *d = g_string_new(NULL);
-    for (guint i = 0; i < cubic->len; i++) {
-        const FlPoint *p = g_array_index(cubic, FlCubic, i).p;
-        if (i == 0)
-            append_point(d, "M", p[0]);
-        append_point(d, "C", p[1]);
-        append_point(d, " ", p[2]);
-        append_point(d, " ", p[3]);
+    double fit = 1; // radii that do not fit shrink alike [CSS Backgrounds 3 §4.5]
+    for (int i = 0; i < 4; i++) {
+        const double *r = i % 2 ? down : across;
+        const double side = i % 2 ? box.height : box.width, sum = r[i] + r[(i + 1) % 4];
+        fit = sum > side ? fmin(fit, side / sum) : fit;
+    }
+    for (int i = 0; i < 4; i++) {
+        const FlPoint corner = {box.x + (i == 1 || i == 2 ? box.width : 0),
+                                box.y + (i > 1 ? box.height : 0)};
+        const double rx = across[i] * fit, ry = down[i] * fit;
+        const int *in = step[(i + 3) % 4], *out = step[i];
+        append_point(d, i ? "L" : "M", (FlPoint){corner.x - in[0] * rx, corner.y - in[1] * ry});
+        g_autofree char *a = fl_css_number_text(rx), *b = fl_css_number_text(ry);
+        g_string_append_printf(d, "A%s %s 0 0 1 ", a, b);
+        append_point(d, "", (FlPoint){corner.x + out[0] * rx, corner.y + out[1] * ry});
     }
     g_string_append_c(d, 'Z');
     return g_string_free(d, FALSE);
 }
 
-/** inset(), rect() and xywh(), with one radius for all corners. */
+/** Reads up to four values, of which those that are missing repeat others. */
+static bool read_four(char **part, const FlCssUnits *units, const double whole[4], double v[4])
+{
+    static const int from[5][4] = {{0}, {0, 0, 0, 0}, {0, 1, 0, 1}, {0, 1, 2, 1}, {0, 1, 2, 3}};
+    const guint n = g_strv_length(part);
+    if (n < 1 || n > 4)
+        return false;
+    for (int i = 0; i < 4; i++) {
+        const char *text = part[from[n][i]];
+        if (strcmp(text, "auto") == 0)
+            v[i] = i == 1 || i == 2 ? whole[i] : 0;
+        else if (!fl_css_number(text, units, whole[i], &v[i]))
+            return false;
+    }
+    return true;
+}
+
+/** Reads the radii of corners, "1px 2px / 3px"; "" is 0. */
+static bool read_radii(const char *text, const FlCssUnits *units, FlCssBox box, double across[4],
+                       double down[4])
+{
+    const double w[4] = {box.width, box.width, box.width, box.width};
+    const double h[4] = {box.height, box.height, box.height, box.height};
+    const char *slash = strchr(text, '/');
+    g_autofree char *first = g_strndup(text, slash ? (gsize)(slash - text) : strlen(text));
+    g_auto(GStrv) x = fl_css_split(first, ' ');
+    g_auto(GStrv) y = fl_css_split(slash ? slash + 1 : first, ' ');
+    memset(across, 0, 4 * sizeof *across), memset(down, 0, 4 * sizeof *down);
+    return !*text || (read_four(x, units, w, across) && read_four(y, units, h, down));
+}
+
+/** inset(), rect() and xywh(). */
 static char *rect_shape(const char *name, const char *arguments, const FlCssUnits *units,
                         FlCssBox box)
 {
@@ -325,32 +362,19 @@ static char *rect_shape(const char *name, const char *arguments, const FlCssUnit
     g_autofree char *sides =
         g_strndup(arguments, round ? (gsize)(round - arguments) : strlen(arguments));
     g_auto(GStrv) part = fl_css_split(sides, ' ');
-    g_auto(GStrv) corner = fl_css_split(round ? round + 5 : "", ' ');
-    const int n = (int)g_strv_length(part);
-    const bool xywh = strcmp(name, "xywh") == 0;
-    double v[4], radius = 0;
-    if (n < 1 || n > 4 || (strcmp(name, "inset") != 0 && n != 4))
+    const bool xywh = strcmp(name, "xywh") == 0, inset = strcmp(name, "inset") == 0;
+    const double w = box.width, h = box.height;
+    const double whole[4] = {xywh ? w : h, xywh ? h : w, xywh ? w : h, xywh ? h : w};
+    double v[4], across[4], down[4];
+    if ((!inset && g_strv_length(part) != 4) || !read_four(part, units, whole, v) ||
+        !read_radii(round ? round + 5 : "", units, box, across, down))
         return NULL;
-    for (int i = 0; i < 4; i++) {
-        static const int from[5][4] = {{0}, {0, 0, 0, 0}, {0, 1, 0, 1}, {0, 1, 2, 1}, {0, 1, 2, 3}};
-        const bool across = xywh ? i % 2 == 0 : i % 2 == 1;
-        const char *text = part[from[n][i]];
-        const double whole = across ? box.width : box.height;
-        if (strcmp(text, "auto") == 0)
-            v[i] = i == 1 || i == 2 ? whole : 0;
-        else if (!fl_css_number(text, units, whole, &v[i]))
-            return NULL;
-    }
-    if (corner[0] && corner[1])
-        return NULL; // corners of their own
-    if (corner[0] && !fl_css_number(corner[0], units, MIN(box.width, box.height), &radius))
-        return NULL;
-    if (xywh)
-        return rounded_text(box.x + v[0], box.y + v[1], MAX(v[2], 0), MAX(v[3], 0), radius, radius);
-    const bool inset = strcmp(name, "inset") == 0;
-    const double right = inset ? box.width - v[1] : v[1], bottom = inset ? box.height - v[2] : v[2];
-    return rounded_text(box.x + v[3], box.y + v[0], MAX(right - v[3], 0), MAX(bottom - v[0], 0),
-                        radius, radius);
+    FlCssBox at = {box.x + v[0], box.y + v[1], v[2], v[3]};
+    if (!xywh)
+        at = (FlCssBox){box.x + v[3], box.y + v[0], (inset ? w - v[1] : v[1]) - v[3],
+                        (inset ? h - v[2] : v[2]) - v[0]};
+    at.width = MAX(at.width, 0), at.height = MAX(at.height, 0);
+    return rounded_text(at, across, down);
 }
 
 static bool take_fill_rule(char **list, bool *evenodd)

@@ -170,9 +170,14 @@ static bool apply(const char *name, const double *v, int n, double *value)
         *value = fabs(v[0]);
     else if (IS("sign", one))
         *value = (v[0] > 0) - (v[0] < 0);
-    else if (IS("round", one || two))
-        *value = floor(v[0] / (two ? v[1] : 1) + 0.5) * (two ? v[1] : 1);
-    else if (IS("mod", two))
+    else if (IS("round", one || two || n == 3)) {
+        const int first = n == 3, way = first ? (int)v[0] : 0;
+        const double step = one ? 1 : v[first + 1], at = v[first] / step;
+        *value = step * (way == 0   ? floor(at + .5)
+                         : way == 1 ? ceil(at)
+                         : way == 2 ? floor(at)
+                                    : trunc(at));
+    } else if (IS("mod", two))
         *value = v[0] - v[1] * floor(v[0] / v[1]);
     else if (IS("rem", two))
         *value = fmod(v[0], v[1]);
@@ -206,7 +211,10 @@ static bool read_call(const Calc *calc, const char **s, double *value)
     const Calc inner = {calc->units, calc->whole, calc->depth + 1};
     *s += n;
     if (**s != '(') {
+        static const char *const ways[] = {"nearest", "up", "down", "to-zero"}; // of round()
         *value = strcmp(name, "pi") == 0 ? G_PI : strcmp(name, "e") == 0 ? G_E : NAN;
+        for (size_t i = 0; calc->depth > 0 && i < G_N_ELEMENTS(ways); i++)
+            *value = strcmp(name, ways[i]) == 0 ? (double)i : *value;
         return isfinite(*value);
     }
     (*s)++;

@@ -266,7 +266,7 @@ static char *mix_matrices(const char *a, const char *b, double p, const FlCssUni
 {
     FlAffine ma, mb;
     Parts x, y;
-    if (!fl_affine_parse_css(a, units, &ma) || !fl_affine_parse_css(b, units, &mb))
+    if (!fl_affine_parse_css(a, units, &ma, NULL) || !fl_affine_parse_css(b, units, &mb, NULL))
         return NULL;
     if (!take_apart(ma, &x) || !take_apart(mb, &y))
         return g_strdup(p < .5 ? a : b);

@@ -132,44 +132,70 @@ bool fl_affine_parse(const char *text, FlAffine *m)
 
 /* ---- CSS ------------------------------------------------------------------------------------- */
 
-/** The part in the plane of a rotation about an axis in space; false for an axis of no length. */
-static bool rotation_in_space(double x, double y, double z, double degrees, FlAffine *m)
+/** A matrix of homogeneous coordinates in space, by rows. */
+typedef struct Space {
+    double m[4][4];
+} Space;
+
+static Space space_of(const FlAffine *plane)
+{
+    return (Space){{{plane->xx, plane->xy, 0, plane->x0},
+                    {plane->yx, plane->yy, 0, plane->y0},
+                    {0, 0, 1, 0},
+                    {0, 0, 0, 1}}};
+}
+
+static Space multiply(const Space *a, const Space *b)
+{
+    Space product = {0};
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 4; k++)
+            for (int j = 0; j < 4; j++)
+                product.m[i][k] += a->m[i][j] * b->m[j][k];
+    return product;
+}
+
+/** A rotation about an axis; false for an axis of no length. */
+static bool rotation_in_space(const double axis[3], double degrees, Space *space)
 {
     double s, c;
-    const double length = sqrt(x * x + y * y + z * z);
+    const double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
     if (!(length > 0))
         return false;
-    x /= length, y /= length, z /= length;
     fl_sincos_degrees(degrees, &s, &c);
-    *m = (FlAffine){x * x * (1 - c) + c,
-                    x * y * (1 - c) + z * s,
-                    x * y * (1 - c) - z * s,
-                    y * y * (1 - c) + c,
-                    0,
-                    0};
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            const double cross = i == k ? 0 : axis[3 - i - k] / length;
+            space->m[i][k] = axis[i] * axis[k] / (length * length) * (1 - c) + (i == k ? c : 0) +
+                             ((k - i + 3) % 3 == 1 ? -s : s) * cross;
+        }
     return true;
 }
 
 /** The matrix of a function in space; false if it is unknown. */
-static bool map_of_space(const char *name, const double *v, int n, FlAffine *m)
+static bool map_of_space(const char *name, const double *v, int n, Space *space)
 {
+    const FlAffine none = FL_AFFINE_NONE;
+    *space = space_of(&none);
 #define IS(word, count) (strcmp(name, word) == 0 && n == (count))
     if (IS("translate3d", 3))
-        *m = (FlAffine){1, 0, 0, 1, v[0], v[1]};
+        space->m[0][3] = v[0], space->m[1][3] = v[1], space->m[2][3] = v[2];
+    else if (IS("translatez", 1))
+        space->m[2][3] = v[0];
     else if (IS("scale3d", 3))
-        *m = (FlAffine){v[0], 0, 0, v[1], 0, 0};
-    else if (IS("translatez", 1) || IS("scalez", 1) || IS("perspective", 1))
-        *m = FL_AFFINE_NONE;
-    else if (IS("rotatez", 1))
-        *m = fl_affine_rotation(v[0]);
-    else if (IS("rotatex", 1))
-        return rotation_in_space(1, 0, 0, v[0], m);
-    else if (IS("rotatey", 1))
-        return rotation_in_space(0, 1, 0, v[0], m);
+        space->m[0][0] = v[0], space->m[1][1] = v[1], space->m[2][2] = v[2];
+    else if (IS("scalez", 1))
+        space->m[2][2] = v[0];
+    else if (IS("perspective", 1))
+        space->m[3][2] = v[0] > 0 ? -1 / fmax(v[0], 1) : 0;
+    else if (IS("rotatez", 1) || IS("rotatex", 1) || IS("rotatey", 1))
+        return rotation_in_space((double[]){name[6] == 'x', name[6] == 'y', name[6] == 'z'}, v[0],
+                                 space);
     else if (IS("rotate3d", 4))
-        return rotation_in_space(v[0], v[1], v[2], v[3], m);
+        return rotation_in_space(v, v[3], space);
     else if (IS("matrix3d", 16))
-        *m = (FlAffine){v[0], v[1], v[4], v[5], v[12], v[13]};
+        for (int i = 0; i < 16; i++)
+            space->m[i % 4][i / 4] = v[i];
     else
         return false;
     return true;
@@ -178,8 +204,9 @@ static bool map_of_space(const char *name, const double *v, int n, FlAffine *m)
 
 /** Reads the arguments of one function and its matrix. */
 static bool map_of_css(const char *name, const char *arguments, const FlCssUnits *units,
-                       FlAffine *m)
+                       Space *space)
 {
+    FlAffine plane;
     g_auto(GStrv) part = fl_css_split(arguments, ',');
     g_autofree char *lower = g_ascii_strdown(name, -1);
     const bool vertical = g_str_has_suffix(lower, "y");
@@ -195,17 +222,28 @@ static bool map_of_css(const char *name, const char *arguments, const FlCssUnits
         else if (!fl_css_number(part[i], units, whole, &v[i]))
             return false;
     }
-    if (map_of_space(lower, v, n, m))
+    if (map_of_space(lower, v, n, space))
         return true;
     Call call = {.name = name, .length = strlen(name), .n = n};
     memcpy(call.v, v, sizeof v);
-    return map_of(&call, m);
+    const bool good = map_of(&call, &plane);
+    *space = good ? space_of(&plane) : *space;
+    return good;
 }
 
-bool fl_affine_parse_css(const char *text, const FlCssUnits *units, FlAffine *m)
+/** What a matrix does to the plane, seen from straight above. Returns: false if it has a vanishing
+ * point, which is left out. */
+static bool flatten(const Space *space, FlAffine *m)
+{
+    const double(*v)[4] = space->m, w = v[3][3] > 0 ? v[3][3] : 1;
+    *m = (FlAffine){v[0][0] / w, v[1][0] / w, v[0][1] / w, v[1][1] / w, v[0][3] / w, v[1][3] / w};
+    return fabs(v[3][0]) + fabs(v[3][1]) < 1e-9;
+}
+
+bool fl_affine_parse_css(const char *text, const FlCssUnits *units, FlAffine *m, bool *flat)
 {
     *m = FL_AFFINE_NONE;
-    FlAffine all = FL_AFFINE_NONE;
+    Space all = space_of(m);
     const char *s = fl_css_space(text);
     if (strcmp(s, "none") == 0)
         return true;
@@ -216,13 +254,15 @@ bool fl_affine_parse_css(const char *text, const FlCssUnits *units, FlAffine *m)
         if (*open != '(' || *close != ')')
             return false;
         g_autofree char *arguments = g_strndup(open + 1, (gsize)(close - open) - 1);
-        FlAffine one;
+        Space one;
         if (!map_of_css(name, arguments, units, &one))
             return false;
-        all = fl_affine_multiply(&all, &one);
+        all = multiply(&all, &one);
         s = fl_css_space(close + 1);
     }
-    *m = all;
+    const bool in_plane = flatten(&all, m);
+    if (flat)
+        *flat = in_plane;
     return true;
 }
 

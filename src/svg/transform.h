@@ -15,9 +15,10 @@ bool fl_affine_parse(const char *text, FlAffine *m);
 
 /**
  * Likewise the CSS property: with calc() and all units, percentages of units->width and height, and
- * functions in space, of which the part in the plane counts (there is no perspective).
+ * functions in space, which are seen from straight above. *flat, unless it is NULL, becomes false
+ * if the map has a vanishing point, which is left out.
  */
-bool fl_affine_parse_css(const char *text, const FlCssUnits *units, FlAffine *m);
+bool fl_affine_parse_css(const char *text, const FlCssUnits *units, FlAffine *m, bool *flat);
 
 /** The transform of an element; the identity if librsvg rejects the attribute. */
 FlAffine fl_affine_of(const xmlNode *node);
