@@ -2,6 +2,7 @@
 #include "base/schedule.h"
 #include "io/provenance.h"
 #include "job/outputs.h"
+#include "job/plan.h"
 #include "job/plan_facts.h"
 #include "job/resume.h"
 #include "option_values.h"
@@ -146,7 +147,7 @@ static void leave(const FlRenderOptions *options, bool finished)
         return;
     g_assert_true(fl_resume_init(&resume, plan, &error));
     for (int f = 0; f < fl_drawing_frames(plan->shapes.drawing); f++) {
-        g_autoptr(GPtrArray) files = fl_frame_files(plan, f, NULL);
+        g_autoptr(GPtrArray) files = fl_frame_files(&plan->out, &plan->shapes, f, NULL);
         g_assert_true(fl_resume_before_files(&resume, plan, f, &error));
         const int number = fl_drawing_number(plan->shapes.drawing, f);
         write_frame(files->pdata[0], fl_mark_of_frame(resume.made_from, number));
@@ -324,7 +325,7 @@ static void check_option(const FlOption *o, GPtrArray *strings)
         return;
     if (!is_of_film(o) && plan->finished == FL_FINISHED_ALL)
         g_error("has nothing to do although %s is %s", o->name, value);
-    if (plan->format->film || is_of_film(o))
+    if (plan->out.format->film || is_of_film(o))
         return; // a film has no record, and frames do not depend on these options
     if (is_resumed(&options))
         g_error("resumes although %s is %s", o->name, value);

@@ -1,6 +1,7 @@
 /* The table of options: every line is read, told, and a fact if it decides bytes. */
 #include "params/options.h"
 
+#include "job/plan.h"
 #include "job/plan_facts.h"
 #include "option_values.h"
 #include "params/config.h"

@@ -109,7 +109,7 @@ static int count_parts(const FlPlan *plan)
 {
     enum { WHOLE = 11, FRAMES_OF_PART = 24, MOST = 16 };
     const int n = plan->shapes.n_frames;
-    return plan->format->film || plan->options.stats || n <= WHOLE
+    return plan->out.format->film || plan->out.stats || n <= WHOLE
                ? 1
                : CLAMP(n / FRAMES_OF_PART, 2, MOST);
 }
@@ -165,7 +165,7 @@ static GPtrArray *words_of(const Farm *farm, Step step, const char *variable)
 {
     const bool paints = step == STEP_PAINT, in_parts = farm->n_parts > 1;
     const bool keeps =
-        step == STEP_MERGE && in_parts && farm->plan->options.overwrite == FL_OVERWRITE_REFUSE;
+        step == STEP_MERGE && in_parts && farm->plan->out.overwrite == FL_OVERWRITE_REFUSE;
     GPtrArray *words = g_ptr_array_new_with_free_func(g_free);
     add_all(words, (const char *const[]){farm->command[0], NULL});
     if (paints)
@@ -509,7 +509,7 @@ char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *cons
                 .n_parts = count_parts(plan),
                 .tasks = g_array_new(FALSE, FALSE, sizeof(Task))};
     g_array_set_clear_func(all.tasks, (GDestroyNotify)clear_task);
-    all.film = all.n_parts > 1 && plan->movie;
+    all.film = all.n_parts > 1 && plan->out.movie;
     make_tasks(&all);
     char *text = printers[farm](&all, error);
     g_array_unref(all.tasks);

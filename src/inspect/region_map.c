@@ -8,7 +8,7 @@
 #include "drawing/open_drawing.h"
 #include "io/pattern.h"
 #include "io/png.h"
-#include "job/outputs.h"
+#include "job/plan.h"
 #include "params/options.h"
 #include <fluidy/style.h>
 

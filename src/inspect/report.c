@@ -22,7 +22,8 @@
 #define GUIDE_FRAMES 3     // frames whose guides are shown
 
 struct FlReport {
-    const FlPlan *plan;
+    const FlShapes *shapes;
+    const FlOutputs *outputs;
     const FlBackground *background;
     FlAtomicFile file;
     FILE *out;         // its stream
@@ -40,8 +41,8 @@ struct FlReport {
 /* Chooses the size of the pictures, and how many frames have them, within MOST_PIXELS. */
 static void choose_size(FlReport *report)
 {
-    const int width = report->plan->shapes.page_width, height = report->plan->shapes.page_height;
-    const int n = fl_drawing_frames(report->plan->shapes.drawing), larger = MAX(width, height);
+    const int width = report->shapes->page_width, height = report->shapes->page_height;
+    const int n = fl_drawing_frames(report->shapes->drawing), larger = MAX(width, height);
     const double smaller = (double)MIN(width, height) / larger;
     const double side = MAX(sqrt(PAGE_PIXELS / (n * smaller)), GOOD_SIDE);
     const double most_side = MIN(sqrt(MOST_PIXELS / (n * smaller)), MAX_SIDE);
@@ -60,23 +61,22 @@ static void write_part(FILE *out, FlPagePart part)
     fwrite(data, 1, n, out);
 }
 
-static bool begin(FlReport *report, const char *folder, GError **error)
+static bool begin(FlReport *report, GError **error)
 {
-    g_autofree char *path = g_build_filename(folder, "index.html", NULL);
-    const FlRenderOptions *o = &report->plan->options;
-    if (!fl_atomic_open(&report->file, path, o->overwrite != FL_OVERWRITE_REFUSE, error))
+    g_autofree char *path = g_build_filename(report->outputs->report, "index.html", NULL);
+    if (!fl_atomic_open(&report->file, path, report->outputs->overwrite != FL_OVERWRITE_REFUSE,
+                        error))
         return false;
     report->out = report->file.stream;
     write_part(report->out, FL_PAGE_HEAD);
     return true;
 }
 
-FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, const char *folder,
-                        GError **error)
+FlReport *fl_report_new(const FlShapes *shapes, const FlOutputs *outputs,
+                        const FlBackground *background, GError **error)
 {
-    const FlShapes *shapes = &plan->shapes;
     g_autoptr(FlReport) report = g_new0(FlReport, 1);
-    report->plan = plan, report->background = background;
+    report->shapes = shapes, report->outputs = outputs, report->background = background;
     g_mutex_init(&report->lock);
     report->flicker = g_new0(FlFlicker, MAX(shapes->n_painted, 1));
     report->point = g_new0(FlFollowedPoint, MAX(shapes->n_painted, 1));
@@ -84,7 +84,7 @@ FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, cons
     report->use = g_new0(FlExemplarUse, MAX(shapes->n_painted, 1));
     choose_size(report);
     if (!fl_guide_view_init(&report->view, report->width, report->height, error) ||
-        !begin(report, folder, error))
+        !begin(report, error))
         return NULL;
     return g_steal_pointer(&report);
 }
@@ -93,7 +93,7 @@ void fl_report_free(FlReport *report)
 {
     if (!report)
         return;
-    for (int p = 0; p < report->plan->shapes.n_painted; p++) {
+    for (int p = 0; p < report->shapes->n_painted; p++) {
         fl_flicker_clear(&report->flicker[p]);
         fl_exemplar_use_clear(&report->use[p]);
     }
@@ -110,11 +110,11 @@ void fl_report_free(FlReport *report)
 /* Returns: true at the middles of equal parts of the film, rounded down to a painted frame. */
 static bool shows_guides(const FlReport *report, int frame)
 {
-    const int n = fl_drawing_frames(report->plan->shapes.drawing);
+    const int n = fl_drawing_frames(report->shapes->drawing);
     for (int k = 0; k < GUIDE_FRAMES; k++) {
         const int middle = (2 * k + 1) * n / (2 * GUIDE_FRAMES);
-        if (frame == fl_drawing_shown(report->plan->shapes.drawing,
-                                      middle - middle % report->plan->shapes.hold))
+        if (frame ==
+            fl_drawing_shown(report->shapes->drawing, middle - middle % report->shapes->hold))
             return true;
     }
     return false;
@@ -168,7 +168,7 @@ static bool write_scaled(FlReport *report, const FlPicture *whole, bool opaque, 
 static bool write_pictures(FlReport *report, const FlComposite *composite, GError **error)
 {
     FILE *out = report->out;
-    const FlShapes *shapes = &report->plan->shapes;
+    const FlShapes *shapes = report->shapes;
     const FlPicture after = {shapes->page_width, shapes->page_height, composite->rgba};
     g_autoptr(FlPicture) drawn = fl_picture_new(shapes->width, shapes->height, error);
     if (!drawn)
@@ -190,15 +190,14 @@ static void write_painters(FlReport *report, const FlReportFrame *frame)
 {
     FILE *out = report->out;
     fputs(",painters:[", out);
-    for (int p = 0; p < report->plan->shapes.n_painted; p++) {
+    for (int p = 0; p < report->shapes->n_painted; p++) {
         const FlPaintedRegion *painted = frame->painted[p];
         const bool searched = painted->stats.n_levels > 0 && painted->stats.level[0].pixels > 0;
         fputs(p > 0 ? ",[" : "[", out);
         fl_script_number(out, searched ? painted->stats.level[0].energy : NAN);
         fputc(',', out);
-        const bool held =
-            frame->frame % painted->settings->hold != 0 ||
-            fl_drawing_shown(report->plan->shapes.drawing, frame->frame) != frame->frame;
+        const bool held = frame->frame % painted->settings->hold != 0 ||
+                          fl_drawing_shown(report->shapes->drawing, frame->frame) != frame->frame;
         fl_script_number(out, held ? 0 : report->flicker[p].change);
         fputc(',', out);
         fl_script_number(out, held ? 0 : painted->seconds);
@@ -214,7 +213,7 @@ static void write_points(FlReport *report, bool pictures)
 {
     FILE *out = report->out;
     fputs(",points:[", out);
-    for (int p = 0; p < report->plan->shapes.n_painted; p++) {
+    for (int p = 0; p < report->shapes->n_painted; p++) {
         FlFollowedPoint *point = &report->point[p];
         const float values[] = {point->x, point->y, point->turn, point->found};
         fputs(p > 0 ? "," : "", out);
@@ -246,7 +245,7 @@ bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **erro
         return true;
     FILE *out = report->out;
     fprintf(out, "<script>frames.push({number:%d",
-            fl_drawing_number(report->plan->shapes.drawing, frame->frame));
+            fl_drawing_number(report->shapes->drawing, frame->frame));
     write_seconds(report, frame);
     write_painters(report, frame);
     const bool pictures = frame->frame % report->every == 0;
@@ -268,7 +267,7 @@ bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **erro
 static void write_region(const FlReport *report, int r)
 {
     FILE *out = report->out;
-    const FlShapes *shapes = &report->plan->shapes;
+    const FlShapes *shapes = report->shapes;
     const FlRegion *region = fl_drawing_region(shapes->drawing, r);
     const int p = shapes->painted_of[r];
     uint8_t rgb[3];
@@ -299,7 +298,7 @@ static void write_region(const FlReport *report, int r)
 static void write_regions(const FlReport *report)
 {
     fputs("regions:[", report->out);
-    for (int r = 0; r < fl_drawing_regions(report->plan->shapes.drawing); r++) {
+    for (int r = 0; r < fl_drawing_regions(report->shapes->drawing); r++) {
         fputs(r > 0 ? "," : "", report->out);
         write_region(report, r);
     }
@@ -311,7 +310,7 @@ static bool write_uses(const FlReport *report, GError **error)
     FILE *out = report->out;
     const char *comma = "";
     fputs(",uses:[", out);
-    for (int k = 0; k < report->plan->shapes.n_painted; k++) {
+    for (int k = 0; k < report->shapes->n_painted; k++) {
         if (report->use[k].total == 0)
             continue;
         fputs(comma, out);
@@ -326,13 +325,12 @@ static bool write_uses(const FlReport *report, GError **error)
 static bool write_film(const FlReport *report, GError **error)
 {
     FILE *out = report->out;
-    const FlPlan *plan = report->plan;
-    const FlShapes *shapes = &plan->shapes;
-    const double fps = plan->options.fps;
+    const FlShapes *shapes = report->shapes;
+    const double fps = report->outputs->fps;
     fputs("<script>film={name:", out);
     fl_script_string(out, fl_drawing_name(shapes->drawing));
     fputs(",output:", out);
-    fl_script_string(out, plan->output);
+    fl_script_string(out, report->outputs->output);
     fputs(",version:", out);
     fl_script_string(out, fl_version());
     fputs(",paper:", out);

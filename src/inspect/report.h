@@ -3,7 +3,7 @@
 #define FLUIDY_INSPECT_REPORT_H
 
 #include "compose/composite.h"
-#include "job/plan.h"
+#include "job/outputs.h"
 
 /** A report being written. Its memory does not grow with the number of frames. */
 typedef struct FlReport FlReport;
@@ -12,19 +12,19 @@ typedef struct FlReport FlReport;
 typedef struct FlReportFrame {
     int frame; // index into the film
     const FlComposite *composite;
-    const FlPaintedRegion *const *painted; // plan->shapes.n_painted of them
+    const FlPaintedRegion *const *painted; // shapes->n_painted of them
     double paint_s, compose_s, write_s;
 } FlReportFrame;
 
 /**
- * Opens folder/index.html; plan and background must outlive the report. The file appears with
+ * Opens index.html in out->report; all three must outlive the report. The file appears with
  * fl_report_finish().
  *
  * Returns: to be freed with fl_report_free(); NULL with FL_ERROR_EXISTS, FL_ERROR_OUTPUT or
  * FL_ERROR_NO_MEMORY.
  */
-FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, const char *folder,
-                        GError **error);
+FlReport *fl_report_new(const FlShapes *shapes, const FlOutputs *out,
+                        const FlBackground *background, GError **error);
 
 void fl_report_free(FlReport *report); // NULL is fine
 

@@ -119,7 +119,7 @@ static bool are_frames_alone(const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
     const bool gives_paint = !o->merge && (o->paint || o->ebsynth);
-    return !plan->any_order && !o->layers && !plan->format->takes_layers && !o->only_region &&
+    return !plan->any_order && !o->layers && !plan->out.format->takes_layers && !o->only_region &&
            !gives_paint && !o->dump && !o->report;
 }
 
@@ -137,7 +137,7 @@ static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
         return true;
     if (!open_drawing(plan, before, error))
         return false;
-    fl_plan_part(plan, shapes->n_frames, &plan->first, &plan->end);
+    fl_outputs_part(&plan->out, shapes->n_frames, &plan->out.first, &plan->out.end);
     shapes->frames_alone = are_frames_alone(plan);
     shapes->loop = plan->options.loop, shapes->seed = plan->options.seed;
     shapes->stop = (FlStop){plan->any_order ? plan->options.stopped : NULL, plan->options.data};
@@ -174,8 +174,20 @@ static void choose_written(FlPlan *plan, const FlRenderOptions *given)
     const bool paint_alone = given->paint && given->only_region && !given->output;
     if (paint_alone && o->no_frames && !given->layers)
         plan->options.layers = NULL;
-    plan->parts_only =
+    const bool parts_only =
         o->no_frames && (o->paint || o->layers) && !o->merge && (!o->output || paint_alone);
+    plan->out = (FlOutputs){.parts_only = parts_only,
+                            .layers = o->layers,
+                            .paint = o->paint,
+                            .stats = o->stats,
+                            .provenance = o->provenance,
+                            .report = o->report,
+                            .dump = o->dump,
+                            .ebsynth = o->ebsynth,
+                            .paint_area = o->paint_area,
+                            .overwrite = o->overwrite,
+                            .merge = o->merge,
+                            .fps = o->fps};
 }
 
 /* Takes config, styles and store from the plan before, or makes them. */
@@ -328,8 +340,8 @@ void fl_plan_free(FlPlan *plan)
     g_free(shapes->hold_of);
     g_free(shapes->hands);
     g_free(plan->painted_by_ebsynth);
-    g_free(plan->output);
-    g_free(plan->movie);
+    g_free(plan->out.output);
+    g_free(plan->out.movie);
     fl_store_close(plan->cache);
     fl_inputs_free(plan->inputs);
     fl_style_cache_free(plan->styles);
@@ -342,5 +354,5 @@ void fl_plan_free(FlPlan *plan)
 bool fl_plan_is_of_paint(const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
-    return plan->parts_only && !o->layers && !o->report && !o->dry_run;
+    return plan->out.parts_only && !o->layers && !o->report && !o->dry_run;
 }

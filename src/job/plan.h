@@ -2,7 +2,7 @@
 #ifndef FLUIDY_JOB_PLAN_H
 #define FLUIDY_JOB_PLAN_H
 
-#include "io/sink.h"
+#include "job/outputs.h"
 #include "job/region_plan.h"
 #include "job/style_cache.h"
 #include "keep/inputs.h"
@@ -21,14 +21,11 @@ typedef struct FlPlan {
     FlConfig *config;
     FlInputs *inputs; // all files that the render reads
     FlShapes shapes;  // as they are painted
+    FlOutputs out;
     FlStyleCache *styles;
-    int part, n_parts; // of a merge, `part` from 0
-    int first, end;    // the frames of this run, up to and without `end`
-    bool by_page;      // paint of some region, and so the paper, is as large as the page asks for
-    bool half;         // drafts: the page is drawn, painted and composed at half their size
+    bool by_page; // paint of some region, and so the paper, is as large as the page asks for
+    bool half;    // drafts: the page is drawn, painted and composed at half their size
     char *painted_by_ebsynth; // pattern: options.paint where that is what is merged; or NULL
-    char *output;             // pattern or file; of what an interrupted run leaves if parts_only
-    bool parts_only;          // layers or paint are written, but no frames
     FlStore *cache;           // NULL: no paint is kept
     bool any_order;           // frames are asked for in any order, and options change
     FlDigest reading;         // of what decides the drawing
@@ -37,9 +34,6 @@ typedef struct FlPlan {
     FlFinished finished;      // ALL: the rest of the plan is not made
     int n_finished;           // frames of what is finished
     FlCaller caller;          // of the options
-    const FlSinkFormat *format;
-    char *movie; // the film made of the frames; may be NULL
-    const FlSinkFormat *movie_format;
     uint8_t paper[3];
 } FlPlan;
 
@@ -71,16 +65,35 @@ FlPlan *fl_plan_earlier(const FlPlan *plan, int *first, GError **error);
 /** The first of these files, of fl_drawing_found_files(); they go up to fl_drawing_earlier(). */
 int fl_plan_earliest(const FlPlan *plan);
 
-/** The frames, of so many, that a part of a merge composes. */
-void fl_plan_part(const FlPlan *plan, int n_frames, int *first, int *end);
-
 /** True if only paint is made, as in the task of a farm; then no frame is composed. */
 bool fl_plan_is_of_paint(const FlPlan *plan);
+
+/** Everything that decides the frames: versions, drawings, fonts, styles, config, options. To be
+ * freed. */
+FlFacts *fl_plan_facts(const FlPlan *plan);
+
+/** All that decides the guides of every region in the whole film, before anything is drawn: the
+ * drawings, how they are read, and which edges paint crosses. To be freed. */
+FlFacts *fl_plan_facts_of_paint(const FlPlan *plan);
+
+/**
+ * The digest of what was asked for, as far as it is known before a file is read: versions, options,
+ * settings, the names of drawings and frames. How frames become a film is left out.
+ */
+FlDigest fl_request_digest(const FlPlan *plan, const FlSequence *sequence);
 
 /* ---- the steps of planning, in their order; each fills its part of the plan ---------------- */
 
 /** Names the output and looks whether it is free, before the drawing is read. */
 bool fl_plan_find_output(FlPlan *plan, GError **error);
+
+/**
+ * Checks that pictures which are not painted, such as maps, flats and sheets, replace no input.
+ * pattern: their name, with a frame number or without. Styles that a config names are not looked
+ * at. Returns: false with FL_ERROR_USAGE set, naming the file.
+ */
+bool fl_guard_pictures(const FlDrawing *drawing, const FlRenderOptions *options,
+                       const char *pattern, GError **error);
 
 /** The settings of a region; those that its style gives come before all others. Arguments and
  * errors as of fl_config_region_settings(). */

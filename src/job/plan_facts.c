@@ -1,4 +1,5 @@
 #include "job/plan_facts.h"
+#include "job/plan.h"
 
 #include "base/build_id.h"
 #include "io/pattern.h"
@@ -46,7 +47,7 @@ static void add_drawings(FlFacts *facts, const FlPlan *plan)
     for (guint k = 0; k < n; k++)
         add_file(facts, plan->inputs, linked[k]);
     if (frames_share_a_file(drawing)) // they may be moments of it
-        fl_facts_add_number(facts, "fps", plan->options.fps);
+        fl_facts_add_number(facts, "fps", plan->out.fps);
 }
 
 /* The files of an option that may name one for each frame; what is missing is told when it is
@@ -97,7 +98,7 @@ void fl_facts_add_options(FlFacts *facts, FlOptionScope scope, const void *objec
 static void add_options(FlFacts *facts, const FlPlan *plan)
 {
     const FlShapes *shapes = &plan->shapes;
-    fl_facts_add(facts, "the format", plan->format->name);
+    fl_facts_add(facts, "the format", plan->out.format->name);
     fl_facts_add_number(facts, "the first frame's number", fl_drawing_number(shapes->drawing, 0));
     fl_facts_add_number(facts, "the width", shapes->page_width);
     fl_facts_add_number(facts, "the height", shapes->page_height);
@@ -176,14 +177,6 @@ FlFacts *fl_plan_facts(const FlPlan *plan)
     if (background && fl_picture_named(background))
         add_pattern(facts, &plan->shapes, plan->inputs, background, NULL);
     return facts;
-}
-
-FlDigest fl_film_digest(const FlPlan *plan, FlDigest made_from)
-{
-    FlDigest digest = made_from;
-    fl_digest_add_text(&digest, (plan->movie ? plan->movie_format : plan->format)->name);
-    fl_digest_add(&digest, &plan->options.fps, sizeof plan->options.fps);
-    return digest;
 }
 
 /* ---- the paint of one region ---------------------------------------------------------------- */
@@ -284,7 +277,7 @@ FlDigest fl_request_digest(const FlPlan *plan, const FlSequence *sequence)
     fl_facts_add(facts, "the build of fluidy-svg", fl_build_id());
     fl_facts_add_versions(facts);
     fl_facts_add(facts, "the working directory", folder);
-    fl_facts_add(facts, "the format", plan->format->name);
+    fl_facts_add(facts, "the format", plan->out.format->name);
     add_requested(facts, &plan->options);
     for (int f = 0; f < sequence->n; f++) {
         fl_facts_add_number(facts, sequence->file[f], sequence->number[f]);

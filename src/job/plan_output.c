@@ -3,49 +3,49 @@
 
 #include "drawing/open_drawing.h"
 #include "io/pattern.h"
-#include "job/plan_facts.h"
 #include "job/resume.h"
+#include "params/options.h"
 #include <string.h>
 
 static char *default_output(const FlPlan *plan)
 {
-    const char *suffix = plan->format->suffix ? plan->format->suffix : ".png";
-    return g_strdup_printf("fluidy/{name}%s%s", plan->format->film ? "" : "_%04d", suffix);
+    const char *suffix = plan->out.format->suffix ? plan->out.format->suffix : ".png";
+    return g_strdup_printf("fluidy/{name}%s%s", plan->out.format->film ? "" : "_%04d", suffix);
 }
 
 /* The frames of a film lie in its folder: walk_0001.png, … beside walk.mov. */
 static char *frames_of_movie(const FlPlan *plan)
 {
-    const char *suffix = plan->movie_format->suffix;
-    const bool named = g_str_has_suffix(plan->movie, suffix);
-    g_autoptr(GString) stem =
-        g_string_new_len(plan->movie, (gssize)(strlen(plan->movie) - (named ? strlen(suffix) : 0)));
+    const char *suffix = plan->out.movie_format->suffix;
+    const bool named = g_str_has_suffix(plan->out.movie, suffix);
+    g_autoptr(GString) stem = g_string_new_len(
+        plan->out.movie, (gssize)(strlen(plan->out.movie) - (named ? strlen(suffix) : 0)));
     g_string_replace(stem, "%", "%%", 0);
     return g_strdup_printf("%s_%%04d.png", stem->str);
 }
 
 static bool choose_frames(FlPlan *plan, GError **error)
 {
-    if (!plan->format->moving || plan->options.no_frames)
+    if (!plan->out.format->moving || plan->options.no_frames)
         return true;
-    plan->movie = g_steal_pointer(&plan->output), plan->movie_format = plan->format;
-    plan->output = frames_of_movie(plan);
-    plan->format = fl_sink_format("png", plan->output, error);
-    return plan->format != NULL;
+    plan->out.movie = g_steal_pointer(&plan->out.output), plan->out.movie_format = plan->out.format;
+    plan->out.output = frames_of_movie(plan);
+    plan->out.format = fl_sink_format("png", plan->out.output, error);
+    return plan->out.format != NULL;
 }
 
 static bool name_output(FlPlan *plan, const FlSequence *sequence, GError **error)
 {
     const char *format = plan->options.format, *requested = plan->options.output;
-    plan->format = fl_sink_format(format || requested ? format : "png", requested, error);
-    if (!plan->format)
+    plan->out.format = fl_sink_format(format || requested ? format : "png", requested, error);
+    if (!plan->out.format)
         return false;
     g_autofree char *pattern = requested ? g_strdup(requested) : default_output(plan);
-    plan->output = fl_output_of_film(pattern, sequence->name);
-    if (!plan->format->film && !fl_output_is_pattern(plan->output) && sequence->n > 1)
+    plan->out.output = fl_output_of_film(pattern, sequence->name);
+    if (!plan->out.format->film && !fl_output_is_pattern(plan->out.output) && sequence->n > 1)
         return fl_fail(error, FL_ERROR_USAGE,
                        "%s: one file for %d frames; expected a number in the name, such as %%04d",
-                       plan->output, sequence->n);
+                       plan->out.output, sequence->n);
     return choose_frames(plan, error);
 }
 
@@ -66,9 +66,9 @@ static bool name_parts(FlPlan *plan, const FlSequence *sequence, GError **error)
     g_autofree char *whose = short_name(o->only_region ? o->only_region : "regions");
     g_autoptr(GString) pattern = g_string_new(o->paint ? o->paint : o->layers);
     g_string_replace(pattern, "{region}", whose, 0);
-    plan->output = fl_output_of_film(pattern->str, sequence->name);
-    plan->format = fl_sink_format("null", NULL, error);
-    return plan->format != NULL;
+    plan->out.output = fl_output_of_film(pattern->str, sequence->name);
+    plan->out.format = fl_sink_format("null", NULL, error);
+    return plan->out.format != NULL;
 }
 
 static bool is_of_film(const char *part)
@@ -81,16 +81,16 @@ static bool parse_part(FlPlan *plan, GError **error)
 {
     const char *part = plan->options.part;
     int k = 1, length = 0;
-    plan->n_parts = 1;
+    plan->out.n_parts = 1;
     if (part && !is_of_film(part) &&
-        (sscanf(part, "%5d/%5d%n", &k, &plan->n_parts, &length) != 2 || part[length] || k < 1 ||
-         k > plan->n_parts))
+        (sscanf(part, "%5d/%5d%n", &k, &plan->out.n_parts, &length) != 2 || part[length] || k < 1 ||
+         k > plan->out.n_parts))
         return fl_fail(
             error, FL_ERROR_USAGE,
             "‘part’: “%s” is not understood; expected film, or K/N such as 2/4, K from 1 "
             "to N",
             part);
-    plan->part = k - 1;
+    plan->out.part = k - 1;
     return true;
 }
 
@@ -99,29 +99,23 @@ static bool choose_part(FlPlan *plan, GError **error)
 {
     const char *part = plan->options.part;
     const bool of_film = is_of_film(part);
-    if (of_film && !plan->movie)
+    if (of_film && !plan->out.movie)
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "%s: ‘part’ film needs a film as output; use a name such as walk.mov",
-                    plan->output);
-    else if (plan->format->film)
+                    plan->out.output);
+    else if (plan->out.format->film)
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: has no parts; leave out ‘part’ or ‘no-frames’", plan->output);
+                    "%s: has no parts; leave out ‘part’ or ‘no-frames’", plan->out.output);
     else if (!of_film)
-        g_clear_pointer(&plan->movie, g_free);
-    return of_film ? plan->movie != NULL : !plan->format->film;
-}
-
-void fl_plan_part(const FlPlan *plan, int n_frames, int *first, int *end)
-{
-    *first = (int)((int64_t)n_frames * plan->part / plan->n_parts);
-    *end = (int)((int64_t)n_frames * (plan->part + 1) / plan->n_parts);
+        g_clear_pointer(&plan->out.movie, g_free);
+    return of_film ? plan->out.movie != NULL : !plan->out.format->film;
 }
 
 bool fl_plan_find_output(FlPlan *plan, GError **error)
 {
     const FlRenderOptions *o = &plan->options;
     g_autoptr(FlSequence) sequence = fl_sequence_from_options(o, error);
-    if (!sequence || !(plan->parts_only ? name_parts : name_output)(plan, sequence, error) ||
+    if (!sequence || !(plan->out.parts_only ? name_parts : name_output)(plan, sequence, error) ||
         !parse_part(plan, error) || (o->part && !choose_part(plan, error)))
         return false;
     plan->request = fl_request_digest(plan, sequence);
@@ -129,4 +123,21 @@ bool fl_plan_find_output(FlPlan *plan, GError **error)
     plan->n_finished = plan->finished != FL_FINISHED_NOTHING ? sequence->n : 0;
     return plan->finished == FL_FINISHED_ALL ||
            (o->dry_run || o->verify || fl_resume_expect_free(plan, sequence, error));
+}
+
+bool fl_guard_pictures(const FlDrawing *drawing, const FlRenderOptions *options,
+                       const char *pattern, GError **error)
+{
+    g_autoptr(FlInputs) inputs = fl_inputs_new(NULL, NULL);
+    fl_inputs_add_drawing(inputs, drawing);
+    fl_inputs_add_options(inputs, options, drawing, NULL);
+    for (size_t k = 0; k < options->n_settings; k++)
+        if (fl_option_names_style(options->settings[k].name))
+            fl_inputs_add_style(inputs, options->settings[k].value);
+    for (int f = 0; f < fl_drawing_frames(drawing); f++) {
+        char *path = fl_output_name(pattern, fl_drawing_number(drawing, f), NULL, NULL);
+        if (!fl_inputs_may_write(inputs, drawing, path, error))
+            return false;
+    }
+    return true;
 }

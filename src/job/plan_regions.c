@@ -228,8 +228,8 @@ static bool check_regions_file(const FlPlan *plan, const char *pattern, GError *
 bool fl_plan_find_regions(FlPlan *plan, GError **error)
 {
     return check_region_names(plan, error) && plan_regions(plan, error) &&
-           check_regions_file(plan, plan->options.layers, error) &&
-           check_is_png(plan->options.layers, error) &&
-           check_regions_file(plan, plan->options.paint, error) &&
-           (plan->options.merge || check_is_png(plan->options.paint, error));
+           check_regions_file(plan, plan->out.layers, error) &&
+           check_is_png(plan->out.layers, error) &&
+           check_regions_file(plan, plan->out.paint, error) &&
+           (plan->out.merge || check_is_png(plan->out.paint, error));
 }

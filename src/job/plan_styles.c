@@ -79,7 +79,7 @@ static float texture_px(const FlPlan *plan, const FlParams *params)
 /* Checks that the engine has the pairs of guides that are exported to ebsynth. */
 static bool check_export(const FlPlan *plan, const FlRegionPlan *painted, GError **error)
 {
-    if (!plan->options.ebsynth || plan->options.merge || painted->engine->guide_pairs)
+    if (!plan->out.ebsynth || plan->out.merge || painted->engine->guide_pairs)
         return true;
     return fl_fail(
         error, FL_ERROR_USAGE,
@@ -131,8 +131,8 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     const FlRegion *r = fl_drawing_region(plan->shapes.drawing, painted->region);
     painted->area_px = r->area_px;
     painted->flow_files = plan->options.flow;
-    painted->paint_files = plan->options.merge ? plan->options.paint : NULL;
-    painted->keeps_flow = plan->options.dump != NULL;
+    painted->paint_files = plan->out.merge ? plan->out.paint : NULL;
+    painted->keeps_flow = plan->out.dump != NULL;
     painted->loops = plan->options.loop && !painted->paint_files;
     const float px = texture_px(plan, &painted->settings.params);
     fl_params_scale_lengths(&painted->settings.params, px);

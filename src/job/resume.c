@@ -6,7 +6,6 @@
 #include "io/pattern.h"
 #include "io/provenance.h"
 #include "job/outputs.h"
-#include "job/plan_facts.h"
 #include "style/style_folder.h"
 #include <glib/gstdio.h>
 #include <unistd.h>
@@ -16,22 +15,23 @@
  * from 1000 on. */
 static char *hidden_file(const FlPlan *plan, bool any_digits, const char *suffix)
 {
-    g_autofree char *folder = g_path_get_dirname(plan->output);
+    g_autofree char *folder = g_path_get_dirname(plan->out.output);
     g_auto(FlPattern) pattern = {0};
-    const bool parsed = fl_pattern_parse(plan->output, &pattern, NULL);
+    const bool parsed = fl_pattern_parse(plan->out.output, &pattern, NULL);
     if (any_digits && pattern.width > 1)
         pattern.width = 1;
-    g_autofree char *text = parsed ? fl_pattern_text(&pattern) : g_strdup(plan->output);
+    g_autofree char *text = parsed ? fl_pattern_text(&pattern) : g_strdup(plan->out.output);
     g_autofree char *base = g_path_get_basename(text);
-    g_autofree char *part =
-        plan->n_parts > 1 ? g_strdup_printf(".%d-%d", plan->part + 1, plan->n_parts) : g_strdup("");
+    g_autofree char *part = plan->out.n_parts > 1
+                                ? g_strdup_printf(".%d-%d", plan->out.part + 1, plan->out.n_parts)
+                                : g_strdup("");
     g_autofree char *name = g_strdup_printf(".%s%s.%s", base, part, suffix);
     return g_build_filename(folder, name, NULL);
 }
 
 static bool may_overwrite(const FlPlan *plan)
 {
-    return plan->options.overwrite == FL_OVERWRITE_YES;
+    return plan->out.overwrite == FL_OVERWRITE_YES;
 }
 
 /* Loads the record of an earlier run into resume->record, unless this run starts anew. */
@@ -55,7 +55,7 @@ static bool find_record(FlResume *resume, const FlPlan *plan, const FlFacts *fac
     else
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
                     "%s: an earlier run painted %d frames, but %s; use ‘overwrite’ to start anew",
-                    plan->output, record->done, difference);
+                    plan->out.output, record->done, difference);
     return false;
 }
 
@@ -64,9 +64,9 @@ static bool find_record(FlResume *resume, const FlPlan *plan, const FlFacts *fac
 /* A frame of an earlier film keeps a film from being made: its user may have forgotten it. */
 static bool frame_is_free(const FlPlan *plan, const char *file, GError **error)
 {
-    if (fl_check_not_exists(file, plan->movie ? NULL : error))
+    if (fl_check_not_exists(file, plan->out.movie ? NULL : error))
         return true;
-    if (plan->movie)
+    if (plan->out.movie)
         g_set_error(error, FL_ERROR, FL_ERROR_EXISTS,
                     "%s: already exists, a frame of an earlier film; use ‘overwrite’ to replace "
                     "its frames, ‘no-frames’ to write none, or another name",
@@ -106,7 +106,7 @@ static bool is_finished(const FlResume *resume, const FlPlan *plan, int frame,
 /* Files of a finished frame must exist; files of other frames must not, unless they are ours. */
 static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, GError **error)
 {
-    g_autoptr(GPtrArray) files = fl_frame_files(plan, frame, error);
+    g_autoptr(GPtrArray) files = fl_frame_files(&plan->out, &plan->shapes, frame, error);
     if (!files)
         return false;
     if (frame < resume->first)
@@ -114,18 +114,19 @@ static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, G
     if (resume->keep_files || fl_resume_replaces(resume, frame))
         return true;
     for (guint k = 0; k < files->len; k++)
-        if (!(k == 0 && fl_frame_has_picture(plan) ? frame_is_free(plan, files->pdata[k], error)
-                                                   : fl_check_not_exists(files->pdata[k], error)))
+        if (!(k == 0 && fl_frame_has_picture(&plan->out)
+                  ? frame_is_free(plan, files->pdata[k], error)
+                  : fl_check_not_exists(files->pdata[k], error)))
             return false;
     return true;
 }
 
 static bool check_files(const FlResume *resume, const FlPlan *plan, GError **error)
 {
-    const char *movie = resume->path ? plan->movie : plan->output;
+    const char *movie = resume->path ? plan->out.movie : plan->out.output;
     if (movie && !may_overwrite(plan) && !fl_check_not_exists(movie, error))
         return false;
-    for (int f = plan->first; f < plan->end; f++)
+    for (int f = plan->out.first; f < plan->out.end; f++)
         if (!check_frame(resume, plan, f, error))
             return false;
     return true;
@@ -133,11 +134,10 @@ static bool check_files(const FlResume *resume, const FlPlan *plan, GError **err
 
 static bool note_resume(const FlResume *resume, const FlPlan *plan, GError **error)
 {
-    const FlRenderOptions *o = &plan->options;
-    const int n = resume->first - plan->first;
+    const int n = resume->first - plan->out.first;
     fl_note(&plan->caller, "resuming an earlier run, which painted %d of %d frames", n,
-            plan->end - plan->first);
-    return n == 0 || !(o->report || o->stats) ||
+            plan->out.end - plan->out.first);
+    return n == 0 || !(plan->out.report || plan->out.stats) ||
            fl_warn(&plan->caller, error, FL_ERROR_INPUT,
                    "report and statistics lack the %d frames that an earlier run has painted; use "
                    "‘overwrite’ to paint them again",
@@ -146,23 +146,23 @@ static bool note_resume(const FlResume *resume, const FlPlan *plan, GError **err
 
 bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GError **error)
 {
-    const bool one_file = plan->format->film && !plan->parts_only;
-    const char *movie = one_file ? plan->output : plan->movie;
-    const char *const beside[] = {plan->options.stats, plan->options.provenance};
+    const bool one_file = plan->out.format->film && !plan->out.parts_only;
+    const char *movie = one_file ? plan->out.output : plan->out.movie;
+    const char *const beside[] = {plan->out.stats, plan->out.provenance};
     if (may_overwrite(plan))
         return true;
     for (size_t k = 0; k < G_N_ELEMENTS(beside); k++)
-        if (beside[k] && plan->options.overwrite == FL_OVERWRITE_REFUSE &&
+        if (beside[k] && plan->out.overwrite == FL_OVERWRITE_REFUSE &&
             !fl_check_not_exists(beside[k], error))
             return false;
     if (movie && !fl_check_not_exists(movie, error))
         return false;
     g_autofree char *state = hidden_file(plan, false, "state");
-    if (plan->format->film || plan->finished == FL_FINISHED_FRAMES ||
-        plan->options.overwrite == FL_OVERWRITE_KEEP || g_file_test(state, G_FILE_TEST_EXISTS))
+    if (plan->out.format->film || plan->finished == FL_FINISHED_FRAMES ||
+        plan->out.overwrite == FL_OVERWRITE_KEEP || g_file_test(state, G_FILE_TEST_EXISTS))
         return true;
-    for (int f = 0; plan->n_parts == 1 && f < sequence->n; f++) {
-        g_autofree char *file = fl_output_name(plan->output, sequence->number[f], NULL, error);
+    for (int f = 0; plan->out.n_parts == 1 && f < sequence->n; f++) {
+        g_autofree char *file = fl_output_name(plan->out.output, sequence->number[f], NULL, error);
         if (!file || !frame_is_free(plan, file, error))
             return false;
     }
@@ -171,13 +171,13 @@ bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GErro
 
 bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
 {
-    const bool one_file = plan->format->film && !plan->parts_only;
-    *resume = (FlResume){.keep_files = plan->options.overwrite == FL_OVERWRITE_KEEP,
+    const bool one_file = plan->out.format->film && !plan->out.parts_only;
+    *resume = (FlResume){.keep_files = plan->out.overwrite == FL_OVERWRITE_KEEP,
                          .forgets = plan->options.watch};
     if (one_file && plan->options.resume)
         return fl_fail(error, FL_ERROR_USAGE,
                        "%s: a film cannot be resumed without its frames; leave out ‘no-frames’",
-                       plan->output);
+                       plan->out.output);
     g_autoptr(FlFacts) facts = fl_plan_facts(plan);
     resume->path = one_file ? NULL : hidden_file(plan, false, "state");
     if (resume->path && !find_record(resume, plan, facts, error))
@@ -191,8 +191,8 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
     }
     resume->made_from = fl_facts_digest(resume->record->facts);
     resume->first = plan->finished == FL_FINISHED_FRAMES
-                        ? plan->end
-                        : CLAMP(resume->record->done, plan->first, plan->end);
+                        ? plan->out.end
+                        : CLAMP(resume->record->done, plan->out.first, plan->out.end);
     if (!check_files(resume, plan, error))
         return false;
     return !resume->found || note_resume(resume, plan, error);
@@ -203,11 +203,11 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
 /* Excludes other runs with the same output, which would mix their frames. */
 static bool take_lock(FlResume *resume, const FlPlan *plan, GError **error)
 {
-    g_autofree char *folder = g_path_get_dirname(plan->output);
+    g_autofree char *folder = g_path_get_dirname(plan->out.output);
     g_autofree char *path = hidden_file(plan, true, "lock");
     GError *lock_error = NULL;
     (void)g_mkdir_with_parents(folder, 0777); // an error is told when the record is saved
-    resume->lock = fl_lock_take(path, plan->output, &lock_error);
+    resume->lock = fl_lock_take(path, plan->out.output, &lock_error);
     if (lock_error) {
         g_propagate_error(error, lock_error);
         return false;
@@ -299,7 +299,7 @@ void fl_resume_clear(FlResume *resume)
 /* ---- finished renders ------------------------------------------------------------------------ */
 
 /* True if a render writes more than frames and a film. */
-static bool writes_more(const FlRenderOptions *o)
+static bool writes_more(const FlOutputs *o)
 {
     return o->layers || o->paint || o->stats || o->provenance || o->report || o->dump || o->ebsynth;
 }
@@ -309,15 +309,16 @@ static FlStore *store_for(const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
     const bool piped = o->config && !g_file_test(o->config, G_FILE_TEST_IS_REGULAR);
-    return writes_more(o) || o->dry_run || piped ? NULL
-                                                 : plan->cache; // a pipe cannot be read again
+    return writes_more(&plan->out) || o->dry_run || piped
+               ? NULL
+               : plan->cache; // a pipe cannot be read again
 }
 
 /* The name of the record: all renders of these frames, or this film, have the same. */
 static FlDigest name_of(const FlPlan *plan)
 {
     FlDigest name = {0};
-    g_autofree char *path = g_canonicalize_filename(plan->output, NULL);
+    g_autofree char *path = g_canonicalize_filename(plan->out.output, NULL);
     fl_digest_add_text(&name, path);
     return name;
 }
@@ -325,7 +326,7 @@ static FlDigest name_of(const FlPlan *plan)
 /* The one file beside the frames, or instead of frames; may be NULL. */
 static const char *film_of(const FlPlan *plan)
 {
-    return plan->format->film ? plan->output : plan->movie;
+    return plan->out.format->film ? plan->out.output : plan->out.movie;
 }
 
 static bool same_facts(const FlFacts *before, FlFacts *now)
@@ -361,8 +362,8 @@ static FlFacts *found_now(const FlFacts *before)
 static bool frames_are_there(const FlPlan *plan, const FlSequence *sequence, FlDigest made_from)
 {
     bool there = true;
-    for (int f = 0; f < sequence->n && !plan->format->film && there; f++) {
-        g_autofree char *file = fl_output_name(plan->output, sequence->number[f], NULL, NULL);
+    for (int f = 0; f < sequence->n && !plan->out.format->film && there; f++) {
+        g_autofree char *file = fl_output_name(plan->out.output, sequence->number[f], NULL, NULL);
         there = file && fl_mark_is(file, fl_mark_of_frame(made_from, sequence->number[f]));
     }
     return there;
@@ -372,16 +373,16 @@ static bool frames_are_there(const FlPlan *plan, const FlSequence *sequence, FlD
 static bool keeps_all(const FlPlan *plan, const FlSequence *sequence)
 {
     const FlRenderOptions *o = &plan->options;
-    if (o->overwrite != FL_OVERWRITE_KEEP || o->verify || film_of(plan) || plan->parts_only ||
-        writes_more(o))
+    if (plan->out.overwrite != FL_OVERWRITE_KEEP || o->verify || film_of(plan) ||
+        plan->out.parts_only || writes_more(&plan->out))
         return false;
     // frames that are found to be left out would move the bounds of parts
-    if (plan->n_parts > 1 && o->missing > FL_MISSING_ERROR)
+    if (plan->out.n_parts > 1 && o->missing > FL_MISSING_ERROR)
         return false;
     int first, end;
-    fl_plan_part(plan, sequence->n, &first, &end);
+    fl_outputs_part(&plan->out, sequence->n, &first, &end);
     for (int f = first; f < end; f++) {
-        g_autofree char *file = fl_output_name(plan->output, sequence->number[f], NULL, NULL);
+        g_autofree char *file = fl_output_name(plan->out.output, sequence->number[f], NULL, NULL);
         if (!file || !g_file_test(file, G_FILE_TEST_EXISTS))
             return false;
     }
@@ -413,9 +414,9 @@ FlFinished fl_resume_look(FlPlan *plan, const FlSequence *sequence)
     if (!frames_are_there(plan, sequence, plan->made_from))
         return FL_FINISHED_NOTHING;
     tell_inputs(plan, record);
-    if (!film_of(plan) || fl_mark_is(film_of(plan), fl_film_digest(plan, plan->made_from)))
+    if (!film_of(plan) || fl_mark_is(film_of(plan), fl_film_digest(&plan->out, plan->made_from)))
         return FL_FINISHED_ALL;
-    return plan->format->film ? FL_FINISHED_NOTHING : FL_FINISHED_FRAMES;
+    return plan->out.format->film ? FL_FINISHED_NOTHING : FL_FINISHED_FRAMES;
 }
 
 /* Adds the digests of all that was read. */
@@ -479,9 +480,9 @@ static bool verify_frames(Verify *verify, GError **error)
 {
     const FlPlan *plan = verify->plan;
     g_autoptr(FlSequence) sequence = fl_sequence_from_options(&plan->options, error);
-    for (int f = 0; sequence && f < sequence->n && !plan->format->film; f++) {
+    for (int f = 0; sequence && f < sequence->n && !plan->out.format->film; f++) {
         const int number = sequence->number[f];
-        g_autofree char *file = fl_output_name(plan->output, number, NULL, error);
+        g_autofree char *file = fl_output_name(plan->out.output, number, NULL, error);
         if (!file)
             return false;
         verify_file(verify, file, fl_mark_of_frame(plan->made_from, number));
@@ -492,9 +493,9 @@ static bool verify_frames(Verify *verify, GError **error)
 static bool verify_all_files(Verify *verify, FlDigest made_from, GError **error)
 {
     const FlPlan *plan = verify->plan;
-    for (int f = plan->first; f < plan->end; f++) {
+    for (int f = plan->out.first; f < plan->out.end; f++) {
         const int number = fl_drawing_number(plan->shapes.drawing, f);
-        g_autoptr(GPtrArray) files = fl_frame_files(plan, f, error);
+        g_autoptr(GPtrArray) files = fl_frame_files(&plan->out, &plan->shapes, f, error);
         for (guint k = 0; files && k < files->len; k++)
             verify_file(verify, files->pdata[k], fl_mark_of_frame(made_from, number));
         if (!files)
@@ -522,7 +523,7 @@ bool fl_resume_verify(const FlPlan *plan, GError **error)
     if (!(facts ? verify_all_files(&verify, made_from, error) : verify_frames(&verify, error)))
         return false;
     if (film_of(plan))
-        verify_file(&verify, film_of(plan), fl_film_digest(plan, made_from));
+        verify_file(&verify, film_of(plan), fl_film_digest(&plan->out, made_from));
     if (verify.n_wrong > 0 && facts)
         note_cause(plan, facts);
     if (verify.n_wrong > 0)

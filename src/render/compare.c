@@ -10,7 +10,7 @@
 #include "io/contact_sheet.h"
 #include "io/pattern.h"
 #include "io/png.h"
-#include "job/outputs.h"
+#include "job/plan.h"
 #include "params/options.h"
 #include "params/text.h"
 #include "render/render_frames.h"

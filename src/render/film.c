@@ -226,23 +226,18 @@ static bool follow_options(FlFilm *film, Take *take, GError **error)
     const FlRenderOptions before = take->asked;
     const FlDrawing *read = take->open ? take->frames.plan->shapes.drawing : NULL;
     ask(film, take);
-    FlPlan *plan =
-        fl_plan_follow(take->open ? take->frames.plan : NULL, &take->asked, memory, error);
-    if (!plan) {
+    if (!fl_frames_follow(&take->frames, &take->asked, memory, error)) {
         take->asked = before;
         return false;
     }
-    if (take->open)
-        fl_frames_follow(&take->frames, plan);
-    else
-        fl_frames_init(&take->frames, plan);
+    const FlShapes *shapes = &take->frames.plan->shapes;
     take->open = true;
     take->frames.small = take == &film->draft;
-    film->stats.n_read += plan->shapes.drawing != read;
+    film->stats.n_read += shapes->drawing != read;
     if (fl_frames_check(&take->frames, error) && fl_frames_prepare(&take->frames, error))
         return true;
     FlPainters *painters = &take->frames.painters;
-    if (painters->shapes.masks == plan->shapes.masks)
+    if (painters->shapes.masks == shapes->masks)
         fl_painters_forget(painters);
     else {
         take->n_painted += fl_painters_painted(painters);
@@ -258,9 +253,8 @@ static bool settle(FlFilm *film, Take *take, GError **error)
         return true;
     if (!follow_options(film, take, error))
         return false;
-    const FlPlan *plan = take->frames.plan;
-    const FlShapes *shapes = &plan->shapes;
-    const double fps = plan->options.fps;
+    const FlShapes *shapes = &take->frames.plan->shapes;
+    const double fps = take->frames.plan->out.fps;
     film->info = (FlFilmInfo){.n_frames = shapes->n_frames,
                               .width = shapes->page_width,
                               .height = shapes->page_height,
@@ -291,11 +285,11 @@ static bool work_on(FlFilm *film, Take *take, int frame, Work work, GError **err
     return done;
 }
 
-static const FlFilmFrame *give(FlFilm *film, const FlPlan *plan, int frame, int width, int height,
-                               const uint8_t *rgba)
+static const FlFilmFrame *give(FlFilm *film, const FlShapes *shapes, int frame, int width,
+                               int height, const uint8_t *rgba)
 {
     film->frame =
-        (FlFilmFrame){frame, fl_drawing_number(plan->shapes.drawing, frame), width, height, rgba};
+        (FlFilmFrame){frame, fl_drawing_number(shapes->drawing, frame), width, height, rgba};
     return &film->frame;
 }
 
@@ -308,12 +302,9 @@ static bool make_frame(FlFilm *film, Take *take, int frame, GError **error)
         !fl_frames_make(frames, frame, -1, &film->composite, &paint_s, error))
         return false;
     film->stats.n_composed++;
-    const FlPlan *plan = frames->plan;
-    const FlShapes *shapes = &plan->shapes;
-    const bool half = plan->half && frames->small;
-    (void)give(film, plan, frame, half ? fl_drawing_width(shapes->drawing) : shapes->page_width,
-               half ? fl_drawing_height(shapes->drawing) : shapes->page_height,
-               film->composite.rgba);
+    const FlShapes *shapes = &frames->plan->shapes;
+    (void)give(film, shapes, frame, frames->small ? shapes->width : shapes->page_width,
+               frames->small ? shapes->height : shapes->page_height, film->composite.rgba);
     return true;
 }
 
@@ -367,7 +358,7 @@ static bool draw_shapes(FlFilm *film, Take *take, int frame, bool map, GError **
         fl_draw_list_map(drawing, draws, rgba);
     g_free(film->drawing);
     film->drawing = g_steal_pointer(&rgba);
-    (void)give(film, take->frames.plan, frame, width, height, film->drawing);
+    (void)give(film, &take->frames.plan->shapes, frame, width, height, film->drawing);
     return true;
 }
 

@@ -6,14 +6,13 @@
 #include "io/png.h"
 #include "io/provenance.h"
 #include "job/paint_files.h"
-#include "job/plan_facts.h"
 
 #define SHEET "paper_sheet" // region names have no underscore
 #define GROUND "paper_ground"
 
 static char *mark_of(const FlFrameWriter *writer, int frame)
 {
-    const int number = fl_drawing_number(writer->plan->shapes.drawing, frame);
+    const int number = fl_drawing_number(writer->shapes->drawing, frame);
     return fl_mark_text(fl_mark_of_frame(writer->resume->made_from, number));
 }
 
@@ -21,13 +20,12 @@ static char *mark_of(const FlFrameWriter *writer, int frame)
 static bool write_layer(const FlFrameWriter *writer, FlPng png, const char *name, int frame,
                         GError **error)
 {
-    const FlPlan *plan = writer->plan;
-    const FlShapes *shapes = &plan->shapes;
+    const FlShapes *shapes = writer->shapes;
     const int number = fl_drawing_number(shapes->drawing, frame);
     g_autofree char *mark = mark_of(writer, frame);
     png.width = shapes->page_width, png.height = shapes->page_height;
     png.mark = mark;
-    g_autofree char *path = fl_output_name(plan->options.layers, number, name, error);
+    g_autofree char *path = fl_output_name(writer->out->layers, number, name, error);
     return path && (fl_resume_keeps(writer->resume, path) ||
                     fl_png_save(&png, path, fl_resume_replaces(writer->resume, frame), error));
 }
@@ -54,12 +52,12 @@ static bool write_layers(const FlFrameWriter *writer, const FlComposite *composi
 bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *const *painted,
                            int frame, GError **error)
 {
-    const FlRenderOptions *o = &writer->plan->options;
+    const FlOutputs *o = writer->out;
     g_autofree char *mark = mark_of(writer, frame);
-    for (int p = 0; o->paint && !o->merge && p < writer->plan->shapes.n_painted; p++) {
-        const FlRegionPlan *region = &writer->plan->shapes.painted[p];
+    for (int p = 0; o->paint && !o->merge && p < writer->shapes->n_painted; p++) {
+        const FlRegionPlan *region = &writer->shapes->painted[p];
         g_autofree char *path =
-            fl_paint_file_name(o->paint, writer->plan->shapes.drawing, region, frame, error);
+            fl_paint_file_name(o->paint, writer->shapes->drawing, region, frame, error);
         if (!path)
             return false;
         if (frame % region->settings.hold == 0 && !fl_resume_keeps(writer->resume, path) &&
@@ -74,7 +72,7 @@ bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *c
 static int stack_layers(const FlFrameWriter *writer, const FlComposite *composite, int frame,
                         FlSinkLayer *layers)
 {
-    const int width = writer->plan->shapes.page_width, height = writer->plan->shapes.page_height;
+    const int width = writer->shapes->page_width, height = writer->shapes->page_height;
     int n = 0;
     if (composite->ground)
         layers[n++] = (FlSinkLayer){
@@ -104,12 +102,12 @@ bool fl_frame_writer_frame(FlFrameWriter *writer, const FlComposite *composite, 
 {
     g_autofree FlSinkLayer *layers = g_new0(FlSinkLayer, composite->n_layers + 2);
     const int n_layers = stack_layers(writer, composite, frame, layers);
-    const FlSinkFrame out = {.number = fl_drawing_number(writer->plan->shapes.drawing, frame),
+    const FlSinkFrame out = {.number = fl_drawing_number(writer->shapes->drawing, frame),
                              .rgba = composite->rgba,
                              .rgba16 = composite->rgba16,
                              .layers = layers,
                              .n_layers = n_layers};
-    if (writer->plan->options.layers && !write_layers(writer, composite, frame, error))
+    if (writer->out->layers && !write_layers(writer, composite, frame, error))
         return false;
     if (writer->sink->format->film)
         return fl_sink_frame(writer->sink, &out, error);
@@ -124,7 +122,7 @@ bool fl_frame_writer_frame(FlFrameWriter *writer, const FlComposite *composite, 
 static bool copy_finished_frames(FlFrameWriter *writer, GError **error)
 {
     for (int f = 0; writer->movie && f < writer->resume->first; f++) {
-        const int number = fl_drawing_number(writer->plan->shapes.drawing, f);
+        const int number = fl_drawing_number(writer->shapes->drawing, f);
         g_autofree char *file = fl_sink_file(&writer->sink->params, number, error);
         g_autoptr(FlPicture) picture = file ? fl_picture_read_png(file, error) : NULL;
         if (!picture)
@@ -145,27 +143,27 @@ static bool copy_finished_frames(FlFrameWriter *writer, GError **error)
     return true;
 }
 
-bool fl_frame_writer_init(FlFrameWriter *writer, const FlPlan *plan, const FlResume *resume,
-                          bool opaque, FlFrameTaker taker, GError **error)
+bool fl_frame_writer_init(FlFrameWriter *writer, const FlOutputs *out, const FlShapes *shapes,
+                          const FlResume *resume, bool opaque, FlStop stop, FlFrameTaker taker,
+                          GError **error)
 {
-    *writer = (FlFrameWriter){.plan = plan, .resume = resume};
-    const FlDigest of_film = fl_film_digest(plan, resume->made_from);
-    FlSinkParams params = {
-        .path = plan->output,
-        .made_from = plan->format->film ? of_film : resume->made_from,
-        .width = plan->shapes.page_width,
-        .height = plan->shapes.page_height,
-        .fps = plan->options.fps,
-        .opaque = opaque,
-        .patience = {.stopped = plan->options.stopped, .data = plan->options.data},
-        .taker = taker,
-        .fast = plan->half, // drafts are not kept
-        .overwrite = plan->options.overwrite == FL_OVERWRITE_YES};
-    writer->sink = fl_sink_open(taker.take ? &fl_sink_taken : plan->format, &params, error);
-    if (!writer->sink || !plan->movie)
+    *writer = (FlFrameWriter){.out = out, .shapes = shapes, .resume = resume};
+    const FlDigest of_film = fl_film_digest(out, resume->made_from);
+    FlSinkParams params = {.path = out->output,
+                           .made_from = out->format->film ? of_film : resume->made_from,
+                           .width = shapes->page_width,
+                           .height = shapes->page_height,
+                           .fps = out->fps,
+                           .opaque = opaque,
+                           .patience = {.stopped = stop.asked, .data = stop.data},
+                           .taker = taker,
+                           .fast = shapes->width < shapes->page_width, // drafts are not kept
+                           .overwrite = out->overwrite == FL_OVERWRITE_YES};
+    writer->sink = fl_sink_open(taker.take ? &fl_sink_taken : out->format, &params, error);
+    if (!writer->sink || !out->movie)
         return writer->sink != NULL;
-    params.path = plan->movie, params.made_from = of_film;
-    writer->movie = fl_sink_open(plan->movie_format, &params, error);
+    params.path = out->movie, params.made_from = of_film;
+    writer->movie = fl_sink_open(out->movie_format, &params, error);
     return writer->movie && copy_finished_frames(writer, error);
 }
 

@@ -3,11 +3,12 @@
 #define FLUIDY_RENDER_FRAME_WRITER_H
 
 #include "compose/composite.h"
-#include "job/plan.h"
+#include "job/outputs.h"
 #include "job/resume.h"
 
 typedef struct FlFrameWriter {
-    const FlPlan *plan;        // borrowed
+    const FlOutputs *out;      // borrowed
+    const FlShapes *shapes;    // borrowed
     const FlPaperSheet *paper; // borrowed; NULL: no paper
     const FlResume *resume;    // borrowed: which files to keep and which to replace
     FlSink *sink;
@@ -15,11 +16,12 @@ typedef struct FlFrameWriter {
 } FlFrameWriter;
 
 /**
- * Opens the outputs of a plan, or only the taker if there is one; in a resumed render, copies the
+ * Opens the outputs, or only the taker if there is one; in a resumed render, copies the
  * finished frames into the film. FL_ERROR_OUTPUT, FL_ERROR_CHANGED.
  */
-bool fl_frame_writer_init(FlFrameWriter *writer, const FlPlan *plan, const FlResume *resume,
-                          bool opaque, FlFrameTaker taker, GError **error);
+bool fl_frame_writer_init(FlFrameWriter *writer, const FlOutputs *out, const FlShapes *shapes,
+                          const FlResume *resume, bool opaque, FlStop stop, FlFrameTaker taker,
+                          GError **error);
 void fl_frame_writer_clear(FlFrameWriter *writer);
 
 /** Writes the paint of the regions painted in the frame, if the options name files for it. */

@@ -25,7 +25,7 @@ bool fl_frames_tell(const FlFrames *frames, const char *stage, int done, double 
 {
     const FlPlan *plan = frames->plan;
     const FlRenderOptions *o = &plan->options;
-    const int total = plan->end - plan->first, made = MAX(done - plan->first, 0);
+    const int total = plan->out.end - plan->out.first, made = MAX(done - plan->out.first, 0);
     FlProgress progress = {.stage = stage,
                            .region_index = -1,
                            .n_regions = plan->shapes.n_painted,
@@ -55,8 +55,7 @@ static bool dump_picture(const FlPlan *plan, const FlPainter *painter, int numbe
     g_autofree float *flow =
         fl_alloc(2 * fl_rect_pixels(painted->rect), sizeof(float), "a flow field", error);
     return flow && fl_painter_flow(painter, flow, error) &&
-           fl_dump_frame(plan->options.dump, painted, fl_painter_guides(painter), flow, number,
-                         error);
+           fl_dump_frame(plan->out.dump, painted, fl_painter_guides(painter), flow, number, error);
 }
 
 static bool is_empty(const FlGuides *guides)
@@ -78,14 +77,14 @@ static bool export_picture(const FlPlan *plan, const FlPainter *painter, int fra
     if (painted->stats.n_levels > 0 &&
         !painter->plan->engine->guide_pairs(painter->paint, &pairs, error))
         return false;
-    return fl_ebsynth_frame(plan->options.ebsynth, painted, pairs.style ? &pairs : NULL,
+    return fl_ebsynth_frame(plan->out.ebsynth, painted, pairs.style ? &pairs : NULL,
                             fl_drawing_number(plan->shapes.drawing, frame),
                             rests ? fl_drawing_number(plan->shapes.drawing, before) : -1, error);
 }
 
 static bool exports(const FlPlan *plan)
 {
-    return plan->options.ebsynth && !plan->options.merge;
+    return plan->out.ebsynth && !plan->out.merge;
 }
 
 /* Gives a painter's picture to the inspectors: statistics, report and dump. */
@@ -96,7 +95,7 @@ static bool inspect_picture(const FlFrames *frames, int p, int frame, GError **e
     const bool is_new = frame % painter->plan->settings.hold == 0;
     return fl_report_guides(frames->report, p, &painter->result, frame, fl_painter_guides(painter),
                             error) &&
-           (!plan->options.dump || !is_new ||
+           (!plan->out.dump || !is_new ||
             dump_picture(plan, painter, fl_drawing_number(plan->shapes.drawing, frame), error)) &&
            (!exports(plan) || !is_new || export_picture(plan, painter, frame, error));
 }
@@ -106,7 +105,7 @@ static bool paint_one(void *data, int p, int frame, GError **error)
     FlFrames *frames = data;
     const FlPlan *plan = frames->plan;
     FlPainter *painter = frames->painters.painter[p];
-    const bool taken_apart = plan->options.dump || exports(plan);
+    const bool taken_apart = plan->out.dump || exports(plan);
     if (fl_stop_asked(&frames->painters.shapes.stop, error))
         return false;
     painter->wants_guides = taken_apart || frames->report;
@@ -180,7 +179,7 @@ static FlComposeInput compose_input(const FlFrames *frames, int frame)
         .width = shapes->width,
         .height = shapes->height,
         .paper_px = shapes->paper_px,
-        .layers_apart = plan->options.layers || plan->format->takes_layers,
+        .layers_apart = plan->out.layers || plan->out.format->takes_layers,
         .linear = plan->options.blend == FL_BLEND_LINEAR,
         .gap_px = (float)MAX(plan->options.gap, 0),
         .stain = frames->wet ? fl_wet_layer(frames->wet) : NULL,
@@ -325,8 +324,8 @@ static bool compose(FlFrames *frames, int frame, int next, bool marks, FlComposi
         return false;
     }
     const bool made =
-        fl_composite_init(composite, &input, shown, draws, plan->format->takes_16, error) &&
-        (!plan->half || frames->small ||
+        fl_composite_init(composite, &input, shown, draws, plan->out.format->takes_16, error) &&
+        (frames->small || shapes->width == shapes->page_width ||
          fl_composite_enlarge(composite, shapes->page_width, shapes->page_height, error));
     trim(plan);
     return made;
@@ -384,7 +383,7 @@ bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composit
                     GError **error)
 {
     // a merge that starts late has the paint of the earlier frames
-    const bool late = frames->wet && frames->plan->options.merge && !fl_wet_begun(frames->wet);
+    const bool late = frames->wet && frames->plan->out.merge && !fl_wet_begun(frames->wet);
     return (!late ||
             seek_marks(frames, fl_drawing_shown(frames->plan->shapes.drawing, frame), error)) &&
            make_frame(frames, frame, next, composite, paint_s, error);
@@ -453,7 +452,7 @@ static void drop_styles(const FlPlan *plan)
 static void recall(FlFrames *frames)
 {
     const FlPlan *plan = frames->plan;
-    const FlRenderOptions *o = &plan->options;
+    const FlOutputs *o = &plan->out;
     g_autoptr(FlFacts) film = plan->cache ? fl_plan_facts_of_paint(plan) : NULL;
     const FlKeeping keeping = {plan->cache, plan->inputs, film,
                                .takes = !o->report && !o->dump && !o->ebsynth};
@@ -478,7 +477,7 @@ bool fl_frames_prepare(FlFrames *frames, GError **error)
             fl_shapes_rasterise(&plan->shapes, &plan->caller, error)) &&
            fl_frames_tell(frames, "guides", 0, 0, error) &&
            fl_painters_init(painters, &plan->shapes, fl_style_cache_bytes(plan->styles),
-                            plan->options.stats || plan->options.report, error) &&
+                            plan->out.stats || plan->out.report, error) &&
            (!wet || open_wet(frames, error));
 }
 
@@ -526,8 +525,16 @@ void fl_frames_init(FlFrames *frames, FlPlan *plan)
                          .start = plan ? plan->caller.start : 0};
 }
 
-void fl_frames_follow(FlFrames *frames, FlPlan *plan)
+bool fl_frames_follow(FlFrames *frames, const FlRenderOptions *options, size_t memory,
+                      GError **error)
 {
+    FlPlan *plan = fl_plan_follow(frames->plan, options, memory, error);
+    if (!plan)
+        return false;
+    if (!frames->plan) {
+        fl_frames_init(frames, plan);
+        return true;
+    }
     (void)fl_task_wait(&frames->drawing, NULL);
     g_clear_pointer(&frames->draws, g_bytes_unref);
     frames->old_plan = frames->plan, frames->plan = plan;
@@ -537,6 +544,7 @@ void fl_frames_follow(FlFrames *frames, FlPlan *plan)
         plan->options.paper_seed != frames->old_plan->options.paper_seed)
         g_clear_pointer(&frames->wet, fl_wet_free);
     g_clear_pointer(&frames->motion, fl_motion_source_free);
+    return true;
 }
 
 void fl_frames_clear(FlFrames *frames)

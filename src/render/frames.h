@@ -5,6 +5,7 @@
 #include "base/task.h"
 #include "compose/composite.h"
 #include "inspect/report.h"
+#include "job/plan.h"
 #include "render/painters.h"
 #include "wet/wet.h"
 
@@ -36,9 +37,10 @@ typedef struct FlFrames {
 void fl_frames_init(FlFrames *frames, FlPlan *plan);
 void fl_frames_clear(FlFrames *frames);
 
-/** Goes on with a plan of fl_plan_follow(), which it takes over; call fl_frames_check() and
- * fl_frames_prepare() then. */
-void fl_frames_follow(FlFrames *frames, FlPlan *plan);
+/** Goes on with other options, or begins with them if it is zeroed: fl_plan_follow(). Call
+ * fl_frames_check() and fl_frames_prepare() then. */
+bool fl_frames_follow(FlFrames *frames, const FlRenderOptions *options, size_t memory,
+                      GError **error);
 
 /** Makes background and paper, which could stop the render; call it first. */
 bool fl_frames_check(FlFrames *frames, GError **error);

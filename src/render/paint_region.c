@@ -4,6 +4,7 @@
 #include "base/schedule.h"
 #include "compose/colourise.h"
 #include "job/moved_paint.h"
+#include "job/plan.h"
 #include "job/style_cache.h"
 #include "keep/sealed.h"
 #include "params/config.h"

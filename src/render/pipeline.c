@@ -4,14 +4,14 @@
 #include "base/schedule.h"
 #include "inspect/ebsynth.h"
 #include "inspect/stats.h"
-#include "job/outputs.h"
 #include "job/resume.h"
 #include "params/options.h"
 #include "render/frame_writer.h"
 #include "render/frames.h"
+#include "render/loop.h"
 #include "render/render_frames.h"
-#include "render/summary.h"
 #include <fluidy/fluidy.h>
+#include <string.h>
 
 /* A render in progress. */
 typedef struct Pipeline {
@@ -94,7 +94,7 @@ static bool render_frame(Pipeline *pipeline, int frame, GError **error)
     const bool beside = pipeline->frames.beside;
     double paint_s = 0;
     g_auto(FlComposite) composite = {0};
-    const int next = frame + 1 < pipeline->frames.plan->end ? frame + 1 : -1;
+    const int next = frame + 1 < pipeline->frames.plan->out.end ? frame + 1 : -1;
     if (!fl_frames_make(&pipeline->frames, frame, next, &composite, &paint_s, error))
         return false;
     const double compose_s = seconds_since(start) - paint_s;
@@ -113,20 +113,147 @@ static bool render_frame(Pipeline *pipeline, int frame, GError **error)
     return fl_frames_tell(&pipeline->frames, "paint", frame + 1, seconds_since(start), error);
 }
 
+/* ---- the notes at its end ----------------------------------------------------------------------
+ */
+
+static const char *written(const FlPlan *plan)
+{
+    const FlOutputs *o = &plan->out;
+    return !plan->out.parts_only ? plan->out.output : o->paint ? o->paint : o->layers;
+}
+
+static const char *plural(int n)
+{
+    return n == 1 ? "" : "s";
+}
+
+static void tell_render(const FlPlan *plan, const FlStats *stats)
+{
+    const int n = plan->out.end - plan->out.first;
+    const char *movie = plan->out.movie ? plan->out.movie : "",
+               *and = plan->out.movie ? " and " : "";
+    g_autofree char *done = plan->finished == FL_FINISHED_FRAMES
+                                ? g_strdup_printf("made of %d frame%s that %s painted before: %s",
+                                                  n, plural(n), n == 1 ? "was" : "were", movie)
+                                : g_strdup_printf("painted %d frame%s: %s%s%s", n, plural(n), movie,
+                                                  and, written(plan));
+    g_autofree char *seconds = fl_stats_summary(stats, n);
+    g_autofree char *gaps = fl_drawing_left_out(plan->shapes.drawing, plan->options.missing);
+    fl_note(&plan->caller, "%s", done);
+    if (gaps)
+        fl_note(&plan->caller, "%s", gaps);
+    fl_note(&plan->caller, "%s", seconds);
+    if (!plan->out.report)
+        return;
+    g_autofree char *page = g_strdup_printf("report: %s/index.html", plan->out.report);
+    fl_note(&plan->caller, "%s", page);
+}
+
+static void tell_nothing(const FlPlan *plan)
+{
+    const int n = plan->n_finished;
+    g_autofree char *line =
+        plan->out.overwrite == FL_OVERWRITE_KEEP
+            ? g_strdup_printf("nothing to do: %d frame%s exist%s and %s kept: %s", n, plural(n),
+                              n == 1 ? "s" : "", n == 1 ? "is" : "are", plan->out.output)
+            : g_strdup_printf("nothing to do: %d frame%s and all that they are made from have not "
+                              "changed: %s",
+                              n, plural(n), plan->out.movie ? plan->out.movie : plan->out.output);
+    fl_note(&plan->caller, "%s", line);
+}
+
+/* The reason why some of each region was painted although the cache is not new: an array of
+ * strings, "" if no reason is known; to be freed. */
+static char **reasons_of(const FlPainters *painters)
+{
+    char **reasons = g_new0(char *, (gsize)painters->n + 1);
+    for (int p = 0; p < painters->n; p++) {
+        const FlReuse *reuse = &painters->painter[p]->reuse;
+        char *reason = reuse->n_painted > 0 ? fl_reuse_reason(reuse) : NULL;
+        reasons[p] = reason ? reason : g_strdup("");
+    }
+    return reasons;
+}
+
+/* Notes one line for all regions that share the reason of region p, unless an earlier region
+ * did. */
+static void tell_reason(const FlPainters *painters, int p, char **reasons, const FlCaller *caller)
+{
+    int n = 0, painted = 0, all = 0;
+    for (int q = 0; q < painters->n; q++) {
+        const FlReuse *reuse = &painters->painter[q]->reuse;
+        if (strcmp(reasons[q], reasons[p]) != 0)
+            continue;
+        if (q < p)
+            return;
+        n++, painted += reuse->n_painted, all += reuse->n_painted + reuse->n_taken;
+    }
+    g_autofree char *who = n == 1 ? g_strdup_printf("region %s", painters->painter[p]->plan->name)
+                                  : g_strdup_printf("%d regions", n);
+    g_autofree char *line =
+        g_strdup_printf("%s: painted %d of %d pictures, since %s", who, painted, all, reasons[p]);
+    fl_note(caller, "%s", line);
+}
+
+static void tell_reuse(const FlPainters *painters, const FlCaller *caller)
+{
+    int taken = 0, painted = 0;
+    g_auto(GStrv) reasons = reasons_of(painters);
+    for (int p = 0; p < painters->n; p++) {
+        const FlReuse *reuse = &painters->painter[p]->reuse;
+        taken += reuse->n_taken, painted += reuse->n_painted;
+        if (reasons[p][0])
+            tell_reason(painters, p, reasons, caller);
+    }
+    if (taken == 0)
+        return;
+    g_autofree char *line =
+        g_strdup_printf("paint of regions: %d pictures from the cache, %d painted", taken, painted);
+    fl_note(caller, "%s", line);
+}
+
+/* An estimate of the time; held frames take no time. */
+static char *forecast(const FlPlan *plan, double frame_s)
+{
+    const int n = (plan->shapes.n_frames - 1) / plan->shapes.hold + 1;
+    const int lead_in = plan->options.loop ? fl_loop_length(n) : 0;
+    const int seconds = (int)(frame_s * (n + lead_in) + 0.5);
+    return g_strdup_printf("that would take about %d:%02d:%02d, %.2f seconds a frame",
+                           seconds / 3600, seconds / 60 % 60, seconds % 60, frame_s);
+}
+
+static void tell_dry_run(const FlPlan *plan, double frame_s)
+{
+    const FlShapes *shapes = &plan->shapes;
+    const int n = shapes->n_frames;
+    const char *movie = plan->out.movie ? plan->out.movie : "",
+               *and = plan->out.movie ? " and " : "";
+    g_autofree char *work =
+        g_strdup_printf("would paint %d frame%s of %dx%d pixels, %d region%s: %s%s%s", n, plural(n),
+                        shapes->page_width, shapes->page_height, shapes->n_painted,
+                        plural(shapes->n_painted), movie, and, written(plan));
+    g_autofree char *time = forecast(plan, frame_s);
+    g_autofree char *gaps = fl_drawing_left_out(shapes->drawing, plan->options.missing);
+    fl_note(&plan->caller, "%s", work);
+    if (gaps)
+        fl_note(&plan->caller, "%s", gaps);
+    fl_note(&plan->caller, "%s", time);
+}
+
 /* ---- the whole ------------------------------------------------------------------------------- */
 
 static bool open_report(Pipeline *pipeline, GError **error)
 {
-    const char *folder = pipeline->frames.plan->options.report;
-    if (folder)
+    const FlPlan *plan = pipeline->frames.plan;
+    if (plan->out.report)
         pipeline->report =
-            fl_report_new(pipeline->frames.plan, &pipeline->frames.background, folder, error);
-    return !folder || pipeline->report;
+            fl_report_new(&plan->shapes, &plan->out, &pipeline->frames.background, error);
+    return !plan->out.report || pipeline->report;
 }
 
 static bool begin_export(const Pipeline *pipeline, GError **error)
 {
-    const FlRenderOptions *o = &pipeline->frames.plan->options;
+    const FlOutputs *o = &pipeline->frames.plan->out;
     return !o->ebsynth || o->merge || fl_ebsynth_begin(o->ebsynth, error);
 }
 
@@ -152,7 +279,7 @@ static bool restore_state(Pipeline *pipeline, GError **error)
     const FlPlan *plan = pipeline->frames.plan;
     if (!fl_resume_start(resume, plan, error))
         return false;
-    if (resume->found && resume->first > plan->first)
+    if (resume->found && resume->first > plan->out.first)
         pipeline->frames.shown = fl_drawing_shown(plan->shapes.drawing, resume->first - 1);
     if (resume->found)
         return fl_frames_load(&pipeline->frames, resume->record->states, resume->path, error);
@@ -179,10 +306,12 @@ static bool prepare(Pipeline *pipeline, GError **error)
     const FlPlan *plan = frames->plan;
     const double read_s = seconds_since(frames->start);
     if (!fl_frames_check(frames, error) || !fl_resume_init(&pipeline->resume, plan, error) ||
-        !fl_frame_writer_init(&pipeline->writer, plan, &pipeline->resume, frames->background.opaque,
-                              pipeline->taker, error) ||
-        !fl_stats_init(&pipeline->stats, plan->options.stats,
-                       plan->options.overwrite != FL_OVERWRITE_REFUSE, error) ||
+        !fl_frame_writer_init(&pipeline->writer, &plan->out, &plan->shapes, &pipeline->resume,
+                              frames->background.opaque,
+                              (FlStop){plan->caller.stopped, plan->caller.data}, pipeline->taker,
+                              error) ||
+        !fl_stats_init(&pipeline->stats, plan->out.stats,
+                       plan->out.overwrite != FL_OVERWRITE_REFUSE, error) ||
         !open_report(pipeline, error) || !begin_export(pipeline, error))
         return false;
     // statistics and reports read the painters' results after writing
@@ -190,8 +319,8 @@ static bool prepare(Pipeline *pipeline, GError **error)
     frames->report = pipeline->report;
     frames->advice = fl_resume_advice(&pipeline->resume);
     frames->before = pipeline->resume.first;
-    if (frames->before == plan->end ? !fl_resume_start(&pipeline->resume, plan, error)
-                                    : !paint_before(pipeline, error))
+    if (frames->before == plan->out.end ? !fl_resume_start(&pipeline->resume, plan, error)
+                                        : !paint_before(pipeline, error))
         return false;
     pipeline->writer.paper = frames->sheet;
     frames->first_frame = g_get_monotonic_time();
@@ -200,24 +329,31 @@ static bool prepare(Pipeline *pipeline, GError **error)
     return true;
 }
 
+static bool write_provenance(const Pipeline *pipeline, GError **error)
+{
+    const FlPlan *plan = pipeline->frames.plan;
+    g_autoptr(FlFacts) facts = plan->out.provenance ? fl_plan_facts(plan) : NULL;
+    return !facts || fl_write_provenance(&plan->out, &plan->shapes, facts, error);
+}
+
 static bool run(Pipeline *pipeline, GError **error)
 {
     if (pipeline->frames.plan->finished == FL_FINISHED_ALL) {
-        fl_summary_of_nothing(pipeline->frames.plan);
+        tell_nothing(pipeline->frames.plan);
         return true;
     }
     if (!prepare(pipeline, error))
         return false;
-    for (int f = pipeline->resume.first; f < pipeline->frames.plan->end; f++)
+    for (int f = pipeline->resume.first; f < pipeline->frames.plan->out.end; f++)
         if (!render_frame(pipeline, f, error))
             return false;
     if (!finish_writing(pipeline, error) || !fl_frame_writer_finish(&pipeline->writer, error) ||
         !fl_stats_finish(&pipeline->stats, error) || !fl_report_finish(pipeline->report, error) ||
-        !fl_write_provenance(pipeline->frames.plan, error))
+        !write_provenance(pipeline, error))
         return false;
     fl_resume_finish(&pipeline->resume, pipeline->frames.plan);
-    fl_summary_of_render(pipeline->frames.plan, &pipeline->stats);
-    fl_summary_of_reuse(&pipeline->frames.painters, &pipeline->frames.plan->caller);
+    tell_render(pipeline->frames.plan, &pipeline->stats);
+    tell_reuse(&pipeline->frames.painters, &pipeline->frames.plan->caller);
     fl_painters_finish(&pipeline->frames.painters);
     return true;
 }
@@ -228,7 +364,7 @@ static bool dry_run(Pipeline *pipeline, GError **error)
 {
     FlPlan *plan = pipeline->frames.plan;
     double frame_s = 0;
-    plan->options.dump = plan->options.ebsynth = NULL; // they would write files
+    plan->out.dump = plan->out.ebsynth = NULL; // they would write files
     if (!fl_frames_check(&pipeline->frames, error) || !note_obstacles(pipeline, error) ||
         !fl_frames_prepare(&pipeline->frames, error))
         return false;
@@ -241,7 +377,7 @@ static bool dry_run(Pipeline *pipeline, GError **error)
             return false;
         frame_s = seconds_since(start);
     }
-    fl_summary_of_dry_run(plan, frame_s);
+    tell_dry_run(plan, frame_s);
     return true;
 }
 
@@ -266,7 +402,8 @@ static bool try_render(const FlRenderOptions *options, FlFrameTaker taker, bool 
     fl_frames_init(&pipeline.frames, plan);
     if (whole && fl_shapes_are_large(&plan->shapes))
         fl_memory_map_planes();
-    const bool done = plan && (!whole || fl_guard_inputs(plan, error)) &&
+    const bool done = plan &&
+                      (!whole || fl_guard_inputs(&plan->out, &plan->shapes, plan->inputs, error)) &&
                       (options->verify    ? fl_resume_verify(plan, error)
                        : options->dry_run ? dry_run(&pipeline, error)
                                           : run(&pipeline, error));

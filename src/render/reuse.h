@@ -5,6 +5,7 @@
 
 #include "guides/guides.h"
 #include "job/plan_facts.h"
+#include "keep/store.h"
 
 /**
  * The pictures of a region form a chain: the digest of each is made from that of the one before and
