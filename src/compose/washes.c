@@ -16,6 +16,7 @@ static void put_together(const FlWashField *field)
     float *tones = field->room[2], *hues = field->room[1], *share_of_hue = field->room[4];
     float *tone = wash->plane[FL_WASH_TONE], *hue = wash->plane[FL_WASH_HUE];
     const size_t n = fl_wash_points(wash);
+    const float uneven = .12f + .1f * fl_smooth(field->size / 200 - 1); // puddles need room
     const float quiet = 1 - .45f * fl_smooth(field->size / 300 - 1); // a ground is laid with care
     const float calm = wash->style.calm * MIN(wash->style.wash, 1);
     fl_field_find_pools(field, pool);
@@ -24,7 +25,7 @@ static void put_together(const FlWashField *field)
     fl_field_find_middle(field, wash->plane[FL_WASH_CALM]);
     for (size_t i = 0; i < n; i++) {
         const float slow = tone[i];
-        tone[i] = .24f * fl_clamp(field->side[i] + .45f * slow, -1.3f, 1.3f) + .12f * slow +
+        tone[i] = .24f * fl_clamp(field->side[i] + .45f * slow, -1.3f, 1.3f) + uneven * slow +
                   .38f * wash->style.pool * pool[i] -
                   wash->style.heart * heart[i] * (.55f + .2f * slow);
         hue[i] = 1.25f * hue[i] + .45f * field->side[i];
