@@ -249,7 +249,8 @@ static void colour_of_play(const uint8_t fill[3], int play, uint8_t colour[3], u
     FlColouring how = {.paper = {255, 255, 255},
                        .medium = FL_MEDIUM_BODY,
                        .play = play ? plays : NULL,
-                       .turn = {-.3f, 0, .4f}};
+                       .turn = {-.3f, 0, .4f},
+                       .reach = {1, 1}};
     memcpy(how.fill, fill, 3);
     g_autofree uint8_t *rgba = colours_of_amounts(&how);
     memcpy(colour, rgba + 4 * FL_AMOUNT_ONE, 3);

@@ -521,7 +521,7 @@ static void fills_beyond_paint_become_paint(void)
     g_assert_true(mixture.rgb[0] > 40 && mixture.rgb[1] < 220 && mixture.rgb[1] > 150);
 }
 
-static void the_hue_turns_and_the_light_stays(void)
+static void the_hue_turns_and_most_light_stays(void)
 {
     static const uint8_t fills[][3] = {{0x4f, 0x9d, 0x3f}, {0xfd, 0xae, 0x5f}, {0x5b, 0xb7, 0xd8}};
     for (size_t k = 0; k < G_N_ELEMENTS(fills); k++) {
@@ -536,7 +536,7 @@ static void the_hue_turns_and_the_light_stays(void)
         const float *a = lab[0], *b = lab[1];
         g_test_message("from %.0f %.0f %.0f to %.0f %.0f %.0f", (double)a[0], (double)a[1],
                        (double)a[2], (double)b[0], (double)b[1], (double)b[2]);
-        g_assert_cmpfloat(fabsf(a[0] - b[0]), <, 3);
+        g_assert_cmpfloat(fabsf(a[0] - b[0]), <, 5);
         g_assert_cmpfloat(hypotf(a[1] - b[1], a[2] - b[2]), >, 4);
     }
 }
@@ -636,7 +636,7 @@ int main(int argc, char **argv)
     g_test_add_func("/gaps/edges-are-off-by-a-hair", edges_are_off_by_a_hair);
     g_test_add_func("/pigments/they-mix-to-the-fill", pigments_mix_to_the_fill);
     g_test_add_func("/pigments/fills-beyond-paint-become-paint", fills_beyond_paint_become_paint);
-    g_test_add_func("/pigments/the-hue-turns-and-the-light-stays",
-                    the_hue_turns_and_the_light_stays);
+    g_test_add_func("/pigments/the-hue-turns-and-most-light-stays",
+                    the_hue_turns_and_most_light_stays);
     return g_test_run();
 }

@@ -87,7 +87,8 @@ static int least_up_to(Fill *fill, const FlColouring *colouring, const FlTransfe
 static void turn_hue(const FlColouring *colouring, int amount, int play, uint8_t colour[3])
 {
     const float share = (float)(play * MIN(amount, FL_AMOUNT_ONE * 13 / 10)) /
-                        (FL_PLAY_ONE * FL_AMOUNT_ONE) * 1.442695f * FL_DENSITY_ONE;
+                        (FL_PLAY_ONE * FL_AMOUNT_ONE) * 1.442695f * FL_DENSITY_ONE *
+                        colouring->reach[play > 0];
     for (int c = 0; c < 3; c++) {
         const int32_t density = FL_DENSITY_ONE + (int32_t)lrintf(colouring->turn[c] * share);
         const int factor = fl_density_level(density); // 128 * 255: one

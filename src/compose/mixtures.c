@@ -111,7 +111,10 @@ static float distance_of(const Candidate *candidate, const float fill[3])
            OF_COMPLEMENTS * (1 - harmony_of(candidate));
 }
 
-/* The density that turns the hue by one CIE76 towards the second pigment and keeps the light. */
+#define MOST_LIGHT .01f // of a channel, as the lighter pigment prevails by one CIE76
+
+/* The density that turns the hue by one CIE76 towards the second pigment. Much of the light stays,
+ * but a dark yellow would be olive. */
 static void find_turn(FlMixture *mixture)
 {
     static const float light[3] = {.2126f, .7152f, .0722f};
@@ -137,8 +140,9 @@ static void find_turn(FlMixture *mixture)
     fl_lab(moved, turned);
     const float by = hypotf(turned[1] - lab[1], turned[2] - lab[2]);
     const float one = MIN(1 / MAX(by, .05f), MOST_TURN / .02f);
+    const float lighter = .5f * mean / weight * .02f / MAX(most, 1e-6f) * one;
     for (int c = 0; c < 3; c++)
-        mixture->turn[c] *= one;
+        mixture->turn[c] = one * mixture->turn[c] + CLAMP(lighter, -MOST_LIGHT, MOST_LIGHT);
 }
 
 static FlMixture *search(const uint8_t fill[3])

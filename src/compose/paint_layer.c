@@ -80,6 +80,10 @@ static void find_turn(FlColouring *colouring, const FlMixture *mixture, float hu
     const float strength = (1 - white) * 3 * hue * CLAMP(.25f + chroma / 60, .3f, 1.25f);
     for (int c = 0; c < 3; c++)
         colouring->turn[c] = strength * mixture->turn[c] + white * shadow[c];
+    for (int k = 0; k < 2; k++) {
+        const float room = (float)fabs(k - mixture->share); // to that pigment alone
+        colouring->reach[k] = MAX(white, CLAMP(room / .3f, .35f, 1));
+    }
 }
 
 static FlColouring colouring_of(const FlLayerSources *sources, const FlPaintedRegion *painted,
