@@ -280,6 +280,12 @@ static void drafts_come_at_once_and_leave_frames_alone(void)
     g_assert_nonnull(fl_film_draft(test->film, 1, &error));
     g_assert_nonnull(fl_film_draft(test->film, 2, &error));
     g_assert_cmpint(painted(test->film), ==, 8);
+    set(test->film, NULL, "tint", "#11aa55"); // drafts are taken again, in any order
+    for (int k = 5; k > 0; k--)
+        if (k != 3)
+            g_assert_nonnull(fl_film_draft(test->film, k, &error));
+    g_assert_cmpint(painted(test->film), ==, 8);
+    set(test->film, NULL, "tint", NULL);
     write_film(test);
     assert_as_written(test, 4);
     g_assert_cmpint(fl_film_stats(test->film)->n_read, ==, 2);

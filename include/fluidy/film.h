@@ -128,9 +128,10 @@ FL_API const FlFilmInfo *fl_film_draft_info(FlFilm *film, GError **error);
 
 /**
  * Drafts a frame, to be seen at once: with detail "draft", in the half size in which that is
- * painted, and as if the film began with this
- * frame, unless the one before was drafted last. So it depends on the order of the calls, and later
- * frames follow it. Paint of a loop, whose beginning follows from its end, is painted from there.
+ * painted, and as if the film began with this frame, unless the one before was drafted already. So
+ * it depends on the order of the calls, and later frames follow it; it is kept as it is until an
+ * option of its paint changes. Paint of a loop, whose beginning follows from its end, is painted
+ * from there.
  */
 FL_API const FlFilmFrame *fl_film_draft(FlFilm *film, int frame, GError **error);
 

@@ -5,7 +5,7 @@
 
 enum {
     CREDIT = 16, // pictures on their way to a page
-    LEAST = 3,   // of them for a job, which gives up to three
+    LEAST = 6,   // of them for two jobs, which give up to three each
     LAG = 6,     // frames by which drafts follow the one that is looked at, one after the other
     AROUND = 12, // frames that are drafted in turn after and before one that stays
     PING_S = 20,
@@ -33,7 +33,7 @@ struct FlLiveClients {
     int generation;
     int n_frames; // 0: not known yet
     char *facts;  // for those who come later
-    bool busy;    // a job is on its way
+    int n_asked;  // jobs on their way: a second one, so that the film never waits
     bool stuck;   // drafts fail
     bool spoilt;  // frames do
 };
@@ -94,7 +94,7 @@ static bool wants_draft(Client *client, FlLiveJob *job)
 {
     const int n = client->clients->n_frames;
     const int lag = n > 0 ? (client->look - client->next + n) % n : 0;
-    const bool goes_on = n > 0 && client->has[client->look % n] == 0 && lag > 0 && lag <= LAG &&
+    const bool goes_on = lag > 0 && lag <= LAG && !(client->has[client->look % n] & HAS_DRAFT) &&
                          client->has[(client->next + n - 1) % n] & HAS_DRAFT;
     const int start = goes_on ? client->next : client->look;
     const int frame =
@@ -115,7 +115,6 @@ static bool wants_sample(Client *client, FlLiveJob *job)
     job->frame = MIN(client->sampled, client->clients->n_frames - 1);
     job->region = *client->region ? client->region : NULL;
     job->style = (int)client->samples;
-    job->asker = client;
     return client->samples < styles->len;
 }
 
@@ -128,17 +127,42 @@ static bool wants_frame(Client *client, FlLiveJob *job)
     return job->frame >= 0;
 }
 
+/* The parts of a frame that a job gives. */
+static int parts_of(const FlLiveJob *job)
+{
+    return job->work == FL_LIVE_SAMPLE  ? 0
+           : job->work == FL_LIVE_FRAME ? HAS_FRAME | HAS_DRAFT
+           : job->with_drawing          ? HAS_DRAFT | HAS_DRAWING
+                                        : HAS_DRAFT;
+}
+
+/* The asker counts as one that has what it gets. */
+static void ask(Client *client, FlLiveJob *job)
+{
+    FlLiveClients *clients = client->clients;
+    job->generation = clients->generation;
+    job->asker = client;
+    clients->n_asked++;
+    if (clients->n_frames > 0)
+        client->has[job->frame] |= (uint8_t)parts_of(job);
+    if (job->work == FL_LIVE_DRAFT)
+        client->next = job->frame + 1;
+    if (job->work == FL_LIVE_SAMPLE)
+        client->samples++;
+    fl_live_film_ask(clients->film, job);
+}
+
 static void go_on(FlLiveClients *clients)
 {
     static bool (*const wants[])(Client *, FlLiveJob *) = {wants_draft, wants_sample, wants_frame};
+    const int most = clients->n_frames > 0 ? 2 : 1;
     for (size_t w = 0; w < G_N_ELEMENTS(wants); w++)
-        for (guint k = 0; k < clients->all->len && !clients->busy && !clients->stuck; k++) {
+        for (guint k = 0; k < clients->all->len && !clients->stuck; k++) {
             Client *client = clients->all->pdata[k];
-            FlLiveJob job = {.generation = clients->generation};
-            if (client->hidden || client->credit < LEAST || !wants[w](client, &job))
-                continue;
-            clients->busy = true;
-            fl_live_film_ask(clients->film, &job);
+            FlLiveJob job = {0};
+            while (clients->n_asked < most && !client->hidden && client->credit >= LEAST &&
+                   wants[w](client, &job))
+                ask(client, &job);
         }
 }
 
@@ -246,22 +270,17 @@ static void take_facts(FlLiveClients *clients, const FlLiveJob *job)
     fl_live_clients_say(clients, clients->facts);
 }
 
-/* Pictures go to all pages that lack them, samples to the one that has asked. */
+/* Pictures go to the page that has asked and to all that lack them, samples to the first alone. */
 static void give(Client *client, const FlLiveJob *job)
 {
-    const bool sample = job->work == FL_LIVE_SAMPLE;
-    const int parts = job->work == FL_LIVE_FRAME ? HAS_FRAME | HAS_DRAFT
-                      : job->with_drawing        ? HAS_DRAFT | HAS_DRAWING
-                                                 : HAS_DRAFT;
-    if (sample ? client != job->asker || job->style != (int)client->samples
-               : client->hidden || client->credit < LEAST || !(parts & ~client->has[job->frame]))
+    const int parts = parts_of(job);
+    const bool outdated = job->work == FL_LIVE_SAMPLE && job->style >= (int)client->samples;
+    const bool wanted = client == job->asker ? !outdated
+                                             : !client->hidden && client->credit >= LEAST &&
+                                                   parts & ~client->has[job->frame];
+    if (!wanted)
         return;
-    if (sample)
-        client->samples++;
-    else
-        client->has[job->frame] |= (uint8_t)parts;
-    if (job->work == FL_LIVE_DRAFT)
-        client->next = (job->frame + 1) % client->clients->n_frames;
+    client->has[job->frame] |= (uint8_t)parts;
     for (guint k = 0; k < job->pictures->len; k++) {
         client->credit--;
         if (soup_websocket_connection_get_state(client->socket) == SOUP_WEBSOCKET_STATE_OPEN)
@@ -273,7 +292,7 @@ static void give(Client *client, const FlLiveJob *job)
 void fl_live_clients_take(FlLiveClients *clients, FlLiveJob *job)
 {
     const bool current = job->generation == clients->generation;
-    clients->busy = false;
+    clients->n_asked--;
     if (job->facts)
         take_facts(clients, job);
     if (current && job->error && job->work != FL_LIVE_SAMPLE) {

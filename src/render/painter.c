@@ -355,14 +355,19 @@ int fl_painter_seek(FlPainter *painter, int frame, GError **error)
 int fl_painter_start_at(FlPainter *painter, int frame, GError **error)
 {
     const int hold = painter->plan->settings.hold, k = frame / hold;
-    if (painter->origin != FL_FROM_ENGINE || painter->plan->loops || painter->next == k + 1 ||
-        painter->next == k)
+    FlReuse *reuse = &painter->reuse;
+    if (painter->origin != FL_FROM_ENGINE || painter->plan->loops || painter->next == k + 1)
         return fl_painter_seek(painter, frame, error);
-    fl_reuse_restart(&painter->reuse, k);
-    if (!restart(painter, error))
+    reuse->drafts = true;
+    if (painter->next == k || fl_reuse_has(reuse, k))
+        painter->next = k;
+    else if (k > 0 && fl_reuse_has(reuse, k - 1))
+        painter->next = k - 1;
+    else if (restart(painter, error))
+        painter->next = k;
+    else
         return -2;
-    painter->next = k;
-    return k * hold;
+    return painter->next * hold;
 }
 
 /* ---- states ---------------------------------------------------------------------------------- */

@@ -82,15 +82,6 @@ void fl_reuse_begin(FlReuse *reuse, FlRect rect)
 {
     reuse->rect = rect;
     fl_digest_add(&reuse->last, &rect, sizeof rect);
-    reuse->begun = reuse->last;
-}
-
-void fl_reuse_restart(FlReuse *reuse, int k)
-{
-    g_array_set_size(reuse->made, 0);
-    reuse->last = reuse->begun;
-    if (k > 0)
-        fl_digest_add(&reuse->last, &k, sizeof k);
 }
 
 /* ---- pictures ------------------------------------------------------------------------------- */
@@ -124,12 +115,23 @@ static const GArray *digests_of(const FlReuse *reuse)
     return reuse->known ? reuse->known : reuse->made;
 }
 
+static FlDigest draft_of(const FlReuse *reuse, int k)
+{
+    FlDigest digest = reuse->film;
+    fl_digest_add(&digest, &reuse->rect, sizeof reuse->rect);
+    fl_digest_add(&digest, &k, sizeof k);
+    return digest;
+}
+
 bool fl_reuse_has(const FlReuse *reuse, int k)
 {
     const GArray *digests = digests_of(reuse);
-    return reuse->known ||
-           (reuse->cache && reuse->takes && (guint)k < digests->len &&
-            fl_store_has(reuse->cache, FL_KEPT_PICTURE, g_array_index(digests, FlDigest, k)));
+    if (reuse->known || !reuse->cache || !reuse->takes)
+        return reuse->known;
+    if (!reuse->drafts && (guint)k >= digests->len)
+        return false;
+    return fl_store_has(reuse->cache, FL_KEPT_PICTURE,
+                        reuse->drafts ? draft_of(reuse, k) : g_array_index(digests, FlDigest, k));
 }
 
 void fl_reuse_next(FlReuse *reuse, int k, const FlGuides *guides, int window)
@@ -137,6 +139,10 @@ void fl_reuse_next(FlReuse *reuse, int k, const FlGuides *guides, int window)
     if (!reuse->cache)
         return;
     reuse->n_done = (guint)k + 1;
+    if (reuse->drafts) {
+        reuse->last = draft_of(reuse, k);
+        return;
+    }
     if ((guint)k < digests_of(reuse)->len) {
         reuse->last = g_array_index(digests_of(reuse), FlDigest, k);
         return;

@@ -18,11 +18,11 @@
  */
 typedef struct FlReuse {
     FlStore *cache;  // borrowed; NULL: pictures are neither taken nor kept
+    bool drafts;     // a picture is known by its index, whichever pictures came before
     bool takes;      // false while guides or statistics are inspected: then everything is painted
     FlFacts *facts;  // of method and film
     FlDigest method; // of the facts that decide the paint besides the shapes
     FlDigest film, slot; // of all facts; of where those of the last render are kept
-    FlDigest begun;      // before the first picture
     FlDigest last;       // of the picture painted or taken last
     GArray *made;        // of FlDigest: the pictures so far, where they follow from the guides
     GArray *known;       // of FlDigest: all pictures of the film; NULL: not known
@@ -54,10 +54,8 @@ void fl_reuse_recall(FlReuse *reuse, const FlKeeping *keeping, const FlShapes *s
 /** Begins the chain of a region whose pictures are not known and have this place in the frame. */
 void fl_reuse_begin(FlReuse *reuse, FlRect rect);
 
-/** Goes back to picture k, as if the film began with that. */
-void fl_reuse_restart(FlReuse *reuse, int k);
-
-/** True if picture k, counted as they are painted, from 0, can be taken: its digest is known. */
+/** True if picture k, counted as they are painted, from 0, can be taken: its digest is known, or
+ * the draft of it is kept. */
 bool fl_reuse_has(const FlReuse *reuse, int k);
 
 /** Advances to picture k. Its digest is known, or follows from its guides (NULL: they are the same
