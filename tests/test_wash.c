@@ -1,5 +1,6 @@
 /* Washes ride with their figures, are one where shapes of a fill touch, and keep the fill. */
 #include "base/colour_difference.h"
+#include "compose/background.h"
 #include "compose/contacts.h"
 #include "compose/gaps.h"
 #include "compose/ink.h"
@@ -43,6 +44,8 @@ static FlDrawing *open_film(const char *folder, const char *const *frames)
     return open_film_by(FL_KEY_ID, folder, frames);
 }
 
+static FlBackground sheet = {.paper = {255, 255, 255}};
+
 /* The ln of the factor on the amount of each pixel of a frame, BARE where there is no paint. */
 typedef struct Tones {
     float tone[W * H];
@@ -72,6 +75,7 @@ static Tones *lay_frame_of(const FlDrawing *drawing, int frame, const FlWashStyl
         painted[r] = &region[r], painted_of[r] = r;
     }
     const FlComposeInput input = {.drawing = drawing,
+                                  .background = &sheet,
                                   .painted_of = painted_of,
                                   .n_painted = n,
                                   .painted = painted,
@@ -199,6 +203,20 @@ static void each_of_many_fills_stays(void)
         g_assert_cmpfloat(fabs(tone[k] / n[k]), <, .02);
         g_assert_cmpfloat(fabs(play[k] / n[k] / FL_PLAY_ONE), <, .3);
     }
+}
+
+/* More of light paint on dark paper is lighter. */
+static void light_paint_has_its_light_above(void)
+{
+    const FlWashStyle even = {.wash = 1};
+    sheet = (FlBackground){.paper = {28, 34, 48}};
+    g_autofree Tones *tones = lay_still(DISC, &even, 0);
+    sheet = (FlBackground){.paper = {255, 255, 255}};
+    double above = 0, below = 0;
+    for (int i = 0; i < W * H; i++)
+        if (tones->tone[i] > BARE)
+            *(i / W < H / 2 ? &above : &below) += (double)tones->tone[i];
+    g_assert_cmpfloat(above, >, below);
 }
 
 /* A large and a small shape of one fill. */
@@ -620,6 +638,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/wash/the-fill-stays-the-fill", the_fill_stays_the_fill);
     g_test_add_func("/wash/each-of-many-fills-stays", each_of_many_fills_stays);
+    g_test_add_func("/wash/light-paint-has-its-light-above", light_paint_has_its_light_above);
     g_test_add_func("/wash/shapes-apart-stay-each", shapes_apart_stay_each);
     g_test_add_func("/wash/it-rides-with-its-figure", it_rides_with_its_figure);
     g_test_add_func("/wash/a-limb-carries-its-own", a_limb_carries_its_own);

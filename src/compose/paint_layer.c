@@ -46,13 +46,6 @@ FlStacking fl_stacking_of(const FlPaintedRegion *painted)
 #define HAND -58     // degrees: the direction of a right hand's strokes
 #define PALETTE .85f // of the way from a fill to the nearest mixture of two pigments
 
-/* The fill of a region, whatever its fill is in this frame: the mixture for it never changes. */
-static const uint8_t *fill_of_film(const FlComposeInput *input, const FlPaintedRegion *painted)
-{
-    return painted->settings->has_colour ? painted->settings->colour
-                                         : fl_drawing_region(input->drawing, painted->region)->rgb;
-}
-
 /* The share by which a fill is the bare paper, 0..1, with a wash that is no more than a shadow. */
 static float whiteness_of(const FlColouring *colouring, const FlWash *wash)
 {
@@ -101,7 +94,7 @@ static FlColouring colouring_of(const FlLayerSources *sources, const FlPaintedRe
     const FlWash *wash = fl_wash_of_draw(sources->washes, r);
     if (!wash && t->palette == FL_PALETTE_DRAWING)
         return colouring;
-    const uint8_t *film = fill_of_film(input, painted);
+    const uint8_t *film = fl_fill_of_film(input, painted);
     const FlMixture mixture = fl_mixture_of(film);
     for (int c = 0; c < 3 && t->palette == FL_PALETTE_PAINT; c++)
         colouring.fill[c] = (uint8_t)CLAMP(

@@ -1,3 +1,4 @@
+#include "base/colour_difference.h"
 #include "base/error.h"
 #include "base/rng.h"
 #include "compose/wash_field.h"
@@ -9,6 +10,18 @@
 
 /* ---- a wash ---------------------------------------------------------------------------------- */
 
+/* 1 where more paint is darker; -1 where it is lighter, as of light paint on dark paper. */
+static float light_of(const FlWashField *field)
+{
+    const uint8_t *paper = field->input->background->paper;
+    const uint8_t *fill = fl_fill_of_film(field->input, field->wash->painted);
+    const float levels[2][3] = {{paper[0], paper[1], paper[2]}, {fill[0], fill[1], fill[2]}};
+    float lab[2][3];
+    for (int k = 0; k < 2; k++)
+        fl_lab(levels[k], lab[k]);
+    return 1 - 2 * fl_smooth((lab[1][0] - lab[0][0] - 10) / 20);
+}
+
 static void put_together(const FlWashField *field)
 {
     const FlWash *wash = field->wash;
@@ -16,6 +29,7 @@ static void put_together(const FlWashField *field)
     float *tones = field->room[2], *hues = field->room[1], *share_of_hue = field->room[4];
     float *tone = wash->plane[FL_WASH_TONE], *hue = wash->plane[FL_WASH_HUE];
     const size_t n = fl_wash_points(wash);
+    const float lit = light_of(field);
     const float uneven = .12f + .1f * fl_smooth(field->size / 200 - 1); // puddles need room
     const float quiet = 1 - .45f * fl_smooth(field->size / 300 - 1); // a ground is laid with care
     const float calm = wash->style.calm * MIN(wash->style.wash, 1);
@@ -25,10 +39,11 @@ static void put_together(const FlWashField *field)
     fl_field_find_middle(field, wash->plane[FL_WASH_CALM]);
     for (size_t i = 0; i < n; i++) {
         const float slow = tone[i];
-        tone[i] = .24f * fl_clamp(field->side[i] + .45f * slow, -1.3f, 1.3f) + uneven * slow +
+        tone[i] = .24f * fl_clamp(lit * field->side[i] + .45f * slow, -1.3f, 1.3f) + uneven * slow +
                   .38f * wash->style.pool * pool[i] -
                   wash->style.heart * heart[i] * (.55f + .2f * slow);
-        hue[i] = 1.25f * hue[i] + .45f * field->side[i];
+        const float wander = 1.25f * hue[i] + .45f * field->side[i];
+        hue[i] = wander / sqrtf(1 + wander * wander / 2.25f); // browns would turn red and green
     }
     for (size_t i = 0; i < n; i++) {
         breadth[i] *= quiet;
