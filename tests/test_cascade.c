@@ -338,6 +338,11 @@ static void gaps_of_librsvg_are_filled(void)
                  "clip-path", "url(#e)"); // of the group around
     assert_value("<g id='a' opacity='.5' style='display:contents'><path/></g>", "opacity", "1");
     assert_value("<use id='a' style='width:9px'/>", "width", "");
+    assert_value("<svg id='a' style='height:9px'/>", "height", "");
+    assert_value("<path id='a' fill='ActiveText'/>", "fill", "rgb(255, 0, 0)");
+    assert_value("<path id='a' style='--c: ;stroke:var(--c, red)'/>", "stroke", "inherit");
+    assert_value("<feOffset id='a' dx='5%'/>", "dx", "");
+    assert_value("<symbol id='a'/>", "overflow", "hidden");
     g_autoptr(FlSvg) svg =
         open_svg_of("<filter><feFlood/><feDropShadow dx='1' result='r'/></filter>"
                     "<linearGradient x2='0'><stop offset='.123'/><stop/></linearGradient>"

@@ -84,7 +84,8 @@ static void what_is_no_number_is_not_usable(void)
 {
     static const char *const wild[] = {
         "<path d='M0 0L1e308 0 1e308 1e308z' transform='scale(100)'/>",
-        "<polygon points='inf 9 0 0 9 0'/>",
+        "<polygon points='0 0 9 0 inf 9'/>",
+        "<polygon points='0 0 9 0 nan 9'/>",
         "<path d='M0 0l1e308 0 1e308 0 5 5z'/>",
         "<svg viewBox='nan 0 9 9'><path d='M0 0L9 0 9 9z'/></svg>",
     };

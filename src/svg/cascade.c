@@ -244,7 +244,9 @@ static void set_variables(Style *style, const GArray *values)
         if (!style->variables)
             style->variables = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free);
         g_hash_table_insert(style->variables, (gpointer)v->name,
-                            g_strdup(strcmp(v->text, "initial") == 0 ? "" : v->text));
+                            g_strdup(strcmp(v->text, "initial") == 0 ? ""
+                                     : *v->text                      ? v->text
+                                                                     : " "));
     }
     for (guint i = 0; i < values->len && style->variables; i++) {
         const Value *v = &g_array_index(values, Value, i);
@@ -321,6 +323,8 @@ static char *compute(Cascade *c, const char *name, const FlCssProperty *property
     const char *keyword = resolve_keyword(property, value);
     if (keyword)
         return g_strdup(keyword);
+    if (strcmp(name, "stop-color") == 0 && strchr(value, '(') && !strchr("rh", *value))
+        warn(c, name, value, "mixes in Oklab in a browser, which cannot be drawn");
     char *colour = property->kind == FL_CSS_PAINT ? fl_css_colour_with(value, style->colour) : NULL;
     switch (property->kind) {
     case FL_CSS_PAINT:
@@ -557,8 +561,8 @@ static void compute_attributes(Cascade *c, xmlNode *node, const Style *style)
         const char *name = (const char *)a->name;
         const FlCssProperty *property = fl_css_property(name);
         if (!property || property->kind > FL_CSS_GEOMETRY || property->kind == FL_CSS_TEXT ||
-            (property->kind == FL_CSS_PAINT && !strchr(text, '(')))
-            continue;
+            (property->kind == FL_CSS_PAINT && (*text == '#' || fl_is_animation(node))))
+            continue; // fill="freeze"
         g_autofree char *trimmed = g_strstrip(g_strdup(text));
         if (!fl_css_is_valid(property, trimmed)) {
             warn(c, name, trimmed, "is not a value of that property");
@@ -568,6 +572,13 @@ static void compute_attributes(Cascade *c, xmlNode *node, const Style *style)
         if (strcmp(value, trimmed) != 0)
             set_attribute(node, name, value);
     }
+}
+
+/** Returns: true if a property places an element; Chromium leaves those of nested <svg> out. */
+static bool takes_geometry(const xmlNode *node, const char *name)
+{
+    const bool nested = fl_is(node, "svg") && node->parent->type == XML_ELEMENT_NODE;
+    return !nested && (!fl_is(node, "use") || strlen(name) == 1);
 }
 
 /** Puts one value into effect: as a declaration, an attribute, or for css_effects to do. */
@@ -584,7 +595,7 @@ static void apply(Cascade *c, xmlNode *node, const Value *v, const Style *style,
         fl_css_effects_set(effects, v->name, g_steal_pointer(&value));
         break;
     case FL_CSS_GEOMETRY:
-        if (strcmp(value, "inherit") != 0 && !(fl_is(node, "use") && strlen(v->name) > 1))
+        if (strcmp(value, "inherit") != 0 && takes_geometry(node, v->name))
             set_attribute(node, v->name, strcmp(value, "auto") == 0 ? "" : value);
         break;
     default:

@@ -102,7 +102,7 @@ static bool is_root(const xmlNode *node)
 
 /** The box that percentages and the origin refer to [CSS Transforms 1 §5]; the page of the root. */
 static FlCssBox reference_box(const FlCssEffects *effects, const xmlNode *node,
-                              const FlCssUnits *units)
+                              const FlCssUnits *units, bool *known)
 {
     static const char *const own[] = {"fill-box", "content-box", "stroke-box", "border-box", NULL};
     g_autofree char *kind = value_or_attribute(effects, node, "transform-box");
@@ -110,7 +110,7 @@ static FlCssBox reference_box(const FlCssEffects *effects, const xmlNode *node,
     if (is_root(node))
         box = (FlCssBox){0, 0, units->page_width, units->page_height};
     else if (kind && g_strv_contains(own, kind))
-        own_box(node, kind, units, &box);
+        *known = own_box(node, kind, units, &box) || !fl_is(node, "text");
     return box;
 }
 
@@ -202,11 +202,11 @@ static const char *apply_transform(const FlCssEffects *effects, xmlNode *node,
         return NULL;
     if (!origin_text && is_root(node))
         origin_text = g_strdup("center");
-    const FlCssBox box = reference_box(effects, node, units);
+    bool flat = true, known = true;
+    const FlCssBox box = reference_box(effects, node, units, &known);
     FlCssUnits in_box = *units;
     in_box.width = box.width, in_box.height = box.height;
     FlPoint origin = {box.x, box.y};
-    bool flat = true;
     const bool bad_origin = origin_text && !fl_css_position(origin_text, &in_box, box, &origin);
     FlAffine all = {1, 0, 0, 1, origin.x, origin.y}, own = FL_AFFINE_NONE;
     const FlAffine back = {1, 0, 0, 1, -origin.x, -origin.y};
@@ -225,7 +225,7 @@ static const char *apply_transform(const FlCssEffects *effects, xmlNode *node,
     multiply(&all, &own);
     multiply(&all, &back);
     set_matrix(node, &all);
-    return bad_origin ? "transform-origin" : flat ? NULL : "perspective";
+    return bad_origin ? "transform-origin" : !known ? "transform-box" : flat ? NULL : "perspective";
 }
 
 /* ---- clips, backgrounds, dashes -------------------------------------------------------------- */

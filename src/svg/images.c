@@ -68,6 +68,18 @@ static const char *kind_of(const guint8 *data, gsize bytes)
     return NULL;
 }
 
+/** Computes the side of an <image> that is not given from the other one. */
+static void complete_size(xmlNode *node, const int size[2])
+{
+    g_autoptr(xmlChar) width = fl_attribute(node, "width"), height = fl_attribute(node, "height");
+    const char *text = (const char *)(width ? width : height);
+    if (!fl_is(node, "image") || !width == !height || strchr(text, '%') || size[0] < 1)
+        return;
+    const double ratio = (double)size[0] / size[1], side = g_ascii_strtod(text, NULL);
+    g_autofree char *other = fl_css_number_text(width ? side / ratio : side * ratio);
+    xmlSetProp(node, (xmlChar *)(width ? "height" : "width"), (xmlChar *)other);
+}
+
 /** Has a node refer to a PNG instead of a WebP image, whose size has been checked. */
 static void replace_webp(const Check *check, xmlNode *node, xmlAttr *a, const char *href,
                          const guint8 *data, gsize bytes)
@@ -121,23 +133,22 @@ static void enlarge(xmlNode *root)
     }
 }
 
-/** Reads a drawing in the drawing as any other: librsvg gets its plain SVG. */
-static bool compute_drawing(const Check *check, xmlNode *node, xmlAttr *a, const char *text,
-                            gsize bytes, GError **error)
+/** Puts a drawing into the drawing, read as any other: librsvg gets its plain SVG. */
+static void embed_drawing(const Check *check, xmlNode *node, xmlAttr *a, const char *href,
+                          xmlDoc *doc)
 {
-    g_autoptr(xmlDoc) doc =
-        fl_document_parse(text, bytes, check->path, check->number, check->warnings, error);
-    if (!doc)
-        return false;
+    if (!doc) {
+        warn(check, node, href, "cannot be read and is left out");
+        return;
+    }
     fl_cascade(doc, check->path, check->number, NAN, NULL, check->files, check->warnings);
     fl_document_mend(doc);
     enlarge(xmlDocGetRootElement(doc));
     size_t n = 0;
     g_autofree char *plain = fl_document_text(doc, &n);
     g_autofree char *coded = g_base64_encode((guchar *)plain, n);
-    g_autofree char *href = g_strconcat("data:image/svg+xml;base64,", coded, NULL);
-    xmlSetNsProp(node, a->ns, a->name, (xmlChar *)href);
-    return true;
+    g_autofree char *data = g_strconcat("data:image/svg+xml;base64,", coded, NULL);
+    xmlSetNsProp(node, a->ns, a->name, (xmlChar *)data);
 }
 
 /** An image in the drawing itself: a wrong label, which librsvg would believe, is put right. */
@@ -156,16 +167,16 @@ static bool check_data(const Check *check, xmlNode *node, xmlAttr *a, const char
     if (!coded)
         bytes = strlen((char *)data);
     if (drawing) {
-        g_autoptr(GError) problem = NULL;
-        const bool good = compute_drawing(check, node, a, (char *)data, bytes, &problem);
-        if (!good)
-            warn(check, node, href, "cannot be read and is left out");
+        g_autoptr(xmlDoc) doc = fl_document_parse((char *)data, bytes, check->path, check->number,
+                                                  check->warnings, NULL);
+        embed_drawing(check, node, a, href, doc);
         return true;
     }
     const char *kind = kind_of(data, bytes);
     size_of_data(data, bytes, size);
     if (!check_pixels(check, size[0], size[1], error))
         return false;
+    complete_size(node, size);
     if (g_strcmp0(kind, "image/webp") == 0)
         replace_webp(check, node, a, href, data, bytes);
     else if (size[0] == 0)
@@ -184,7 +195,14 @@ static bool check_file(const Check *check, xmlNode *node, xmlAttr *a, const char
     int size[2] = {0};
     g_autofree char *data = NULL;
     gsize bytes = 0;
-    if (gdk_pixbuf_get_file_info(file, &size[0], &size[1]))
+    if (g_str_has_suffix(file, ".svg") || g_str_has_suffix(file, ".svgz")) {
+        g_autoptr(xmlDoc) doc = fl_document_read(file, check->number, check->warnings, NULL);
+        embed_drawing(check, node, a, href, doc);
+        return true;
+    }
+    const bool known = gdk_pixbuf_get_file_info(file, &size[0], &size[1]) != NULL;
+    complete_size(node, size);
+    if (known)
         return check_pixels(check, size[0], size[1], error);
     if (!g_file_get_contents(file, &data, &bytes, NULL) ||
         g_strcmp0(kind_of((const guint8 *)data, bytes), "image/webp") != 0)

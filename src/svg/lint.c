@@ -188,16 +188,17 @@ static void check_values(const Lint *lint, const xmlNode *node)
 {
     static const char *const sharp[] = {"pixelated", "crisp-edges", NULL};
     const bool inside = node->parent && fl_is(node->parent, "clipPath");
-    const bool gradient = g_str_has_suffix((const char *)node->name, "Gradient");
-    const char *name = gradient               ? "color-interpolation"
+    const bool mixes =
+        fl_is(node, "mask") || g_str_has_suffix((const char *)node->name, "Gradient");
+    const char *name = mixes                  ? "color-interpolation"
                        : fl_is(node, "image") ? "image-rendering"
                                               : "clip-path";
     g_autofree char *value = fl_property(node, name);
-    if (value && gradient && strcmp(value, "linearRGB") == 0)
-        warn(lint, node, "color-interpolation: linearRGB is left out: the gradient mixes in sRGB");
+    if (value && mixes && strcmp(value, "linearRGB") == 0)
+        warn(lint, node, "color-interpolation: linearRGB is left out: colours are those of sRGB");
     else if (value && fl_is(node, "image") && g_strv_contains(sharp, value))
         warn(lint, node, "image-rendering is left out: the image is smoothed");
-    else if (value && inside && strcmp(value, "none") != 0)
+    else if (value && inside && name[0] == 'c' && !mixes && strcmp(value, "none") != 0)
         warn(lint, node, "the clip of a shape in a clip path is left out");
 }
 

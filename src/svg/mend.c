@@ -71,6 +71,20 @@ static void mend_shadow(xmlNode *node, int number)
     set(xmlNewChild(node, node->ns, (const xmlChar *)"feMergeNode", NULL), "in", in);
 }
 
+/** Drops numbers that cannot be read, for which librsvg would leave out all that is filtered. */
+static void mend_numbers(xmlNode *step)
+{
+    static const char *const names[] = {"dx",           "dy",     "stdDeviation", "scale",
+                                        "surfaceScale", "radius", "baseFrequency"};
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
+        g_autoptr(xmlChar) text = fl_attribute(step, names[i]);
+        const char *s = (const char *)text;
+        const bool length = i > 1 && i != 3 && i != 4; // which is not negative
+        if (s && (!*s || s[strspn(s, "0123456789+-.eE ,\t\r\n")] || (length && *s == '-')))
+            xmlUnsetProp(step, (const xmlChar *)names[i]);
+    }
+}
+
 /* ---- gradients without length ---------------------------------------------------------------- */
 
 static double share_of(const xmlNode *node, const char *name, double missing)
@@ -106,7 +120,7 @@ static void mend_gradient(xmlNode *node)
 
 /* ---- lists of points ------------------------------------------------------------------------- */
 
-/** Cuts a list of points after its last whole pair, up to which a browser draws. */
+/** Cuts the last number off a list of points that ends with half a pair. */
 static void mend_points(xmlNode *node)
 {
     g_autoptr(xmlChar) text = fl_attribute(node, "points");
@@ -119,8 +133,8 @@ static void mend_points(xmlNode *node)
         s += strspn(s, " \t\r\n\f");
         s += *s == ',';
     }
-    if (!s || (!*s && n % 2 == 0))
-        return;
+    if (!s || *s || n % 2 == 0)
+        return; // librsvg decides
     *good = '\0';
     set(node, "points", (char *)text);
 }
@@ -173,6 +187,9 @@ static void mend_clip(xmlNode *node, GHashTable *ids)
 
 static void mend_words(xmlNode *node)
 {
+    g_autofree char *overflow = fl_property(node, "overflow");
+    if (fl_is(node, "symbol") && !overflow)
+        set(node, "overflow", "hidden");                // a browser's own style sheet says so
     if (fl_is(node, "mask") && fl_is_set(node, "mask")) // which no browser applies
         fl_declare(node, "mask:none");
     g_autofree char *display = fl_property(node, "display");
@@ -190,6 +207,8 @@ static void mend(xmlNode *node, GHashTable *ids, int *n_shadows)
 {
     static const char *const gradients[] = {"linearGradient", "radialGradient", NULL};
     static const char *const with_points[] = {"polygon", "polyline", NULL};
+    if (node->ns && g_str_has_prefix((const char *)node->name, "fe"))
+        mend_numbers(node);
     if (fl_is(node, "feDropShadow"))
         mend_shadow(node, (*n_shadows)++);
     else if (fl_is_one_of(node, gradients))

@@ -165,11 +165,8 @@ static bool is_zero(const xmlChar *length)
 static void show_copy(xmlNode *use, xmlNode *shown, const xmlChar *width, const xmlChar *height)
 {
     const bool symbol = fl_is(shown, "symbol");
-    g_autofree char *overflow = fl_property(shown, "overflow");
     if (symbol)
         xmlNodeSetName(shown, (const xmlChar *)"svg");
-    if (symbol && !overflow) // librsvg cuts <svg> off at its edge, <symbol> only on request
-        xmlSetProp(shown, (const xmlChar *)"overflow", (const xmlChar *)"visible");
     if (symbol || fl_is(shown, "svg")) {
         if (width || symbol)
             xmlSetProp(shown, (const xmlChar *)"width", width ? width : (const xmlChar *)"100%");

@@ -123,6 +123,22 @@ static bool is_masked(const FlLeaf *leaf)
     return strcmp(leaf->layer, leaf->id) != 0;
 }
 
+/** Counts the pixels that differ visibly with all around them, as those along an edge do not. */
+static int count_inner(const uint32_t *a, const uint32_t *b, int width, int height)
+{
+    int n = 0;
+    for (int y = 1; y < height - 1; y++)
+        for (int x = 1; x < width - 1; x++) {
+            bool inner = true;
+            for (int k = 0; k < 9 && inner; k++) {
+                const size_t p = (size_t)(y + k / 3 - 1) * (size_t)width + (size_t)(x + k % 3 - 1);
+                inner = difference(a[p], b[p]) > VISIBLE;
+            }
+            n += inner;
+        }
+    return n;
+}
+
 int fl_looks_alike(FlSelfCheck *check, FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n,
                    FlPageSize page, GError **error)
 {
@@ -140,7 +156,8 @@ int fl_looks_alike(FlSelfCheck *check, FlSvg *svg, const FlLeaf *group, const Fl
         ink += a[p] != 0;
         visible += difference(a[p], b[p]) > VISIBLE;
     }
-    if (visible * EDGE > ink)
+    if (visible * EDGE > ink ||
+        (visible > MOST_VISIBLE && count_inner(a, b, width, height) > MOST_VISIBLE))
         return 0;
     if (is_masked(piece[0].leaf))
         check->allowed += visible;
