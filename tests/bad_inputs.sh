@@ -150,8 +150,6 @@ table() {
 1|eb/red-aa3311/out_0001.png: there is no such file; *|good --merge --ebsynth eb
 1|region red-aa3311: ./still: has no tile; expected a style of transport*|good --tile ./still
 2|region red-aa3311: the engine transport moves ink by its own style; *|good --engine transport --tile ./still
-2|region red-aa3311: --tile moves existing paint, but --refine needs flat ink; *|good --tile ./still --refine 8
-2|refine: “x” is not an integer from 0 to 1000|good -s 11 --refine x
 2|region red-aa3311: the engine transport has no guides for --ebsynth; *|good --engine transport --ebsynth eb
 2|dumped/red-aa3311/clear.png: is read by this render; *|good -y -b dumped/red-aa3311/clear.png --ebsynth dumped -o y_%d.png
 2|--merge paints nothing that --report or --dump could show*|good --merge --paint {region}_%d.png --dump d

@@ -95,7 +95,7 @@ static inline double mean_of(const Disk *disk, double *deviation)
 typedef struct Motion {
     const char *name;
     float shift, turn, growth; // px, radians and a factor of its size
-    float tile, refined;       // bounds of flicker
+    float flicker;             // its bound
 } Motion;
 
 /* The frame before's place of a pixel of a frame; a disk's radius is that of the frame. */

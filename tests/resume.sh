@@ -148,10 +148,6 @@ stop painted2 KILL 2 --paint 'painted2/paint/{region}_%04d.png'
 paint painted2 --paint 'painted2/paint/{region}_%04d.png' && same painted2/paint paint
 result $? 'and the paint that is kept is complete'
 
-paint fine_whole "${ink[@]}" --refine 2
-stop fine KILL 3 "${ink[@]}" --refine 2
-paint fine "${ink[@]}" --refine 2 && same fine fine_whole
-result $? 'and what is refined by frame'
 tile=$(dirname "$style")/styles/11
 paint moved_whole --tile "$tile"
 stop moved KILL 3 --tile "$tile"

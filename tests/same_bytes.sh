@@ -64,12 +64,6 @@ result $? 'a fluid flows alike on any number of threads'
 cp -r "${ink[1]}" fluid && sed -i '/^name =/a fluid = smoke' fluid/style.ini && paint said --style fluid && same said smoke
 result $? 'and a style may ask for it'
 unset film
-cp -r "${ink[1]}" patches && sed -i "/^match/d" patches/style.ini
-fine=(--style patches --refine 2)
-paint patches --style patches
-paint fine -j 1 "${fine[@]}" && paint fine_many -j 4 "${fine[@]}" && same fine_many fine &&
-    FLUIDY_CPU_MASK=0 paint fine_plain "${fine[@]}" && same fine_plain fine && ! same fine patches
-result $? 'and so does what is refined'
 paint flat "${ink[@]}" --strength 0 && ! same flat ink
 result $? 'without strength it stays where it is'
 

@@ -17,7 +17,7 @@ static float noise(uint64_t key, size_t i)
 /* What is derived: the mean of by[i] * ink after a potential, and a little of the determinants. */
 typedef struct Problem {
     FlPotential potential;
-    float density[N * N], taper[N * N], by[N * N], by_jacobian[N * N];
+    float density[N * N], by[N * N], by_jacobian[N * N];
     FlTransportMode mode;
     bool periodic;
 } Problem;
@@ -29,10 +29,9 @@ static Problem *problem_new(FlTransportMode mode, bool periodic)
     g_assert_true(fl_potential_init(&p->potential, N, N, NULL));
     for (int l = 0; l < FL_POTENTIAL_GRIDS; l++)
         for (size_t i = 0; i < fl_potential_nodes(&p->potential, l); i++)
-            p->potential.grid[l][i] = noise((uint64_t)l, i) * (float)(1 << l);
+            p->potential.grid[l][i] = 0.6f * noise((uint64_t)l, i) * (float)(1 << l);
     for (size_t i = 0; i < (size_t)N * N; i++) {
         p->density[i] = 1 + 0.4f * sinf((float)(i % N) * 0.26f) * cosf((float)(i / N) * 0.26f);
-        p->taper[i] = 0.6f + 0.4f * cosf((float)(i % N) * 0.13f);
         p->by[i] = noise(10, i);
         p->by_jacobian[i] = noise(11, i);
     }
@@ -52,7 +51,7 @@ static double value_of(const Problem *p)
     g_autofree float *carried = g_new(float, N *N);
     g_assert_true(fl_flow_map_init(&map, N, N, p->periodic, NULL));
     fl_potential_sum(&p->potential, sum);
-    fl_velocity(&map, sum, p->taper, p->mode, velocity);
+    fl_velocity(&map, sum, p->mode, velocity);
     fl_flow_map_run(&map, velocity);
     fl_flow_map_carry(&map, p->density, carried);
     double value = 0;
@@ -67,10 +66,10 @@ static void derivative_of(const Problem *p, FlPotential *by_node)
     g_autofree float *sum = g_new(float, N *N), *velocity = g_new(float, 2 * N * N);
     g_assert_true(fl_flow_map_init(&map, N, N, p->periodic, NULL));
     fl_potential_sum(&p->potential, sum);
-    fl_velocity(&map, sum, p->taper, p->mode, velocity);
+    fl_velocity(&map, sum, p->mode, velocity);
     fl_flow_map_run(&map, velocity);
     g_assert_true(fl_flow_map_adjoint(&map, p->density, p->by, p->by_jacobian, velocity, NULL));
-    fl_velocity_adjoint(&map, velocity, p->taper, p->mode, sum);
+    fl_velocity_adjoint(&map, velocity, p->mode, sum);
     g_assert_true(fl_potential_init(by_node, N, N, NULL));
     fl_potential_adjoint(sum, by_node);
 }
@@ -100,7 +99,7 @@ static void compare_derivatives(FlTransportMode mode, bool periodic)
         memcpy(p->potential.grid[l], kept, n * sizeof(float));
         expected = (value[1] - value[0]) / (2 * (double)step);
         g_test_message("grid %d: adjoint %.5f, differences %.5f", l, length, expected);
-        g_assert_cmpfloat(fabs(length - expected), <, 0.01 * fabs(expected) + 0.004);
+        g_assert_cmpfloat(fabs(length - expected), <, 0.01 * fabs(expected) + 0.006);
     }
     problem_free(p);
 }
@@ -131,9 +130,9 @@ static void the_loss_has_the_derivative_it_says(void)
     for (size_t i = 0; i < (size_t)n * n; i++)
         density[i] = 1 + 0.5f * noise(3, i);
     g_auto(FlSlicedPlaces) places = {0};
-    g_assert_true(fl_sliced_places_init(&places, NULL, n, n, NULL));
+    fl_sliced_places_init(&places, n, n);
     FlSlicedTarget target = {density, &places};
-    fl_sliced_loss(sliced, &target, 7, 512, 96, 1, by, NULL, NULL);
+    fl_sliced_loss(sliced, &target, 7, 512, 96, 1, by, NULL);
     double length = 0, loss[2];
     for (int i = 0; i < n * n; i++)
         length += (double)by[i] * by[i];
@@ -142,7 +141,7 @@ static void the_loss_has_the_derivative_it_says(void)
         for (int i = 0; i < n * n; i++)
             moved[i] = density[i] + (side ? 0.02f : -0.02f) * (float)(by[i] / length);
         target.density = moved;
-        loss[side] = fl_sliced_loss(sliced, &target, 7, 512, 96, 1, NULL, NULL, NULL);
+        loss[side] = fl_sliced_loss(sliced, &target, 7, 512, 96, 1, NULL, NULL);
     }
     const double expected = (loss[1] - loss[0]) / 0.04;
     g_test_message("adjoint %.5f, differences %.5f", length, expected);
@@ -163,17 +162,17 @@ static void a_solution_looks_like_its_picture(void)
         .width = n, .height = n, .style = sliced, .pace = 1, .key = 1};
     g_assert_true(fl_transport_solve(&problem, 1, &potential, NULL, NULL, NULL));
     fl_potential_sum(&potential, sum);
-    fl_velocity(&map, sum, NULL, FL_TRANSPORT_GATHER, velocity);
+    fl_velocity(&map, sum, FL_TRANSPORT_GATHER, velocity);
     fl_flow_map_run(&map, velocity);
     fl_flow_map_carry(&map, NULL, carried);
     for (int i = 0; i < n * n; i++)
         flat[i] = 1;
     g_auto(FlSlicedPlaces) places = {0};
-    g_assert_true(fl_sliced_places_init(&places, NULL, n, n, NULL));
+    fl_sliced_places_init(&places, n, n);
     FlSlicedTarget target = {flat, &places};
-    const float before = fl_sliced_loss(sliced, &target, 7, 2048, 96, 5, NULL, NULL, NULL);
+    const float before = fl_sliced_loss(sliced, &target, 7, 2048, 96, 5, NULL, NULL);
     target.density = carried;
-    const float after = fl_sliced_loss(sliced, &target, 7, 2048, 96, 5, NULL, NULL, NULL);
+    const float after = fl_sliced_loss(sliced, &target, 7, 2048, 96, 5, NULL, NULL);
     g_test_message("loss %.4f of the flat ink, %.4f of the solution", before, after);
     g_assert_cmpfloat(after, <, 0.05 * before);
 }

@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/density.h"
 #include "base/rng.h"
+#include "bundled_style.h"
 #include "moving_disk.h"
 #include "transport/material_layers.h"
 
@@ -409,6 +410,63 @@ static void what_is_revealed_belongs_to_its_shape(void)
     g_assert_cmpfloat(row[80], ==, 1);
 }
 
+/* The amount at a place between pixels. */
+static double amount_at(const float *amount, double x, double y)
+{
+    const int x0 = (int)floor(x), y0 = (int)floor(y);
+    const double fx = x - x0, fy = y - y0;
+    const float *a = amount + (ptrdiff_t)y0 * SIDE + x0;
+    return (1 - fy) * ((1 - fx) * (double)a[0] + fx * (double)a[1]) +
+           fy * ((1 - fx) * (double)a[SIDE] + fx * (double)a[SIDE + 1]);
+}
+
+/* The mean change along the motion within the taper, by the deviation of the pattern. */
+static double flicker_of(Disk *disk, const Motion *m, int frames)
+{
+    const Motion rest = {.growth = 1};
+    double change = 0, n = 0, deviation = 0;
+    float before[PIXELS];
+    for (int frame = 0; frame < frames; frame++) {
+        const double x0 = m->shift != 0 ? 45 + (double)m->shift * frame : 60;
+        const double radius = (m->growth > 1 ? 32 : 40) * pow((double)m->growth, frame);
+        draw_moved(&disk->guides, frame ? m : &rest, x0, radius);
+        g_assert_true(fl_carried_ink_amounts(disk->ink, &disk->guides, disk->amount, NULL));
+        for (size_t p = 0; frame && p < PIXELS; p++) {
+            double place[2];
+            if (disk->guides.distance[p] <= 8)
+                continue;
+            place_before(m, x0, p, place);
+            change += fabs((double)disk->amount[p] - amount_at(before, place[0], place[1])), n++;
+        }
+        memcpy(before, disk->amount, sizeof before);
+        mean_of(disk, &deviation);
+        g_assert_cmpfloat(deviation, >, 0.3);
+    }
+    return change / n / deviation;
+}
+
+/* What moves, grows, turns by a quarter or rests flickers no more than the bounds say. */
+static void ink_does_not_flicker(void)
+{
+    static const Motion motions[] = {{"moving", 3, 0, 1, 0.08f},
+                                     {"growing", 2.8f, 0, 1.012f, 0.08f},
+                                     {"turning", 0, 0.0654498f, 1, 0.08f},
+                                     {"at rest", 0, 0, 1, 0}};
+    g_autofree char *smoke = bundled_style("14");
+    for (size_t k = 0; k < G_N_ELEMENTS(motions); k++) {
+        const Motion *m = &motions[k];
+        Disk *disk = disk_new(1);
+        fl_carried_ink_free(disk->ink);
+        fl_tile_free(disk->tile);
+        disk->tile = fl_tile_load(smoke, 1, NULL);
+        disk->ink = ink_of(disk->tile, &disk->strength);
+        const double flicker = flicker_of(disk, m, m->turn > 0 ? 24 : 10);
+        g_test_message("%s: flicker %.4f", m->name, flicker);
+        g_assert_cmpfloat(flicker, <=, (double)m->flicker);
+        disk_free(disk);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -428,5 +486,6 @@ int main(int argc, char **argv)
     TEST(what_is_squeezed_at_once_keeps_its_contrast);
     TEST(a_state_in_a_fade_continues);
     TEST(what_is_revealed_belongs_to_its_shape);
+    TEST(ink_does_not_flicker);
     return g_test_run();
 }

@@ -19,7 +19,6 @@ typedef struct FlStyleInstance {
     bool reverse, halved; // halved: for a field of half the size, if there is room for its patches
     FlExemplar *exemplar;
     FlInk *ink;
-    struct FlSliced *patches; // of its ink, for the refinement of transport; NULL: not needed
     FlMedium medium;
     FlMarks marks;
     float granulation; // as of fl_granulate()

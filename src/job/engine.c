@@ -124,10 +124,7 @@ static void *transport_open(const FlEngineInput *input, GError **error)
                                  .height = input->size.height,
                                  .scale = input->style->enlarged,
                                  .strength = &input->settings->strength,
-                                 .refine = input->settings->refine,
                                  .seed = input->seed};
-    if (carried.refine > 0)
-        carried.patches = input->style->patches;
     memcpy(carried.colour.paper, ink->paper, sizeof carried.colour.paper);
     for (int c = 0; c < 3; c++)
         carried.colour.density[c] = (int32_t)((int64_t)ink->density[c] * ink->mean / FL_AMOUNT_ONE);
@@ -182,7 +179,6 @@ static const FlEngine engines[] = {
                               .load = lazy_load},
     [FL_ENGINE_TRANSPORT] = {.name = "transport",
                              .claims = fl_tile_exists,
-                             .refines = true,
                              .exposure = transport_exposure,
                              .open = transport_open,
                              .close = transport_close,

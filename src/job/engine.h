@@ -37,7 +37,6 @@ typedef struct FlEngine {
     /** Paint has alpha of its own, up to this distance beyond its region, px. 0 or NULL: no alpha.
      */
     float (*reach)(const FlStyleInstance *style, const FlParams *params);
-    bool refines;  // fits patches of its style under ‘refine’
     bool enlarges; // takes an exemplar of half the size of its picture
     bool plays;    // shows the recording: whether it flows and is large enough matters
     /** Returns: the state before the first frame; NULL with an error set. */

@@ -108,21 +108,12 @@ const FlEngine *fl_engine_of_region(FlStyleCache *styles, const FlStyleInstance 
     const FlEngine *engine = fl_engine_choose(settings->engine, style->path);
     FlRegionSettings of_tile = *settings;
     *tile = NULL;
-    if (engine->refines && settings->refine > 0 &&
-        !fl_style_cache_learn_patches(styles, style, error))
-        return NULL;
     if (!settings->tile)
         return engine;
     if (!engine->plays) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "the engine %s moves ink by its own style; ‘tile’ is for patch and lazyfluids",
                     engine->name);
-        return NULL;
-    }
-    if (settings->refine > 0) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "‘tile’ moves existing paint, but ‘refine’ needs flat ink; use only one of "
-                    "them");
         return NULL;
     }
     of_tile.style = settings->tile;

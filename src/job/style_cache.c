@@ -4,7 +4,6 @@
 #include "job/style_size.h"
 #include "style/adapt.h"
 #include "synth/enlargement.h"
-#include "transport/style_ink.h"
 #include <string.h>
 
 #define LEAST_STILL 96                  // px: LazyFluids weaves too few patches into a hash
@@ -25,7 +24,6 @@ static void style_instance_free(FlStyleInstance *instance)
     g_free(instance->path);
     fl_exemplar_free(instance->exemplar);
     fl_ink_free(instance->ink);
-    fl_sliced_free(instance->patches);
     g_free(instance);
 }
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyleInstance, style_instance_free)
@@ -185,15 +183,6 @@ void fl_style_cache_trim(FlStyleCache *cache, GPtrArray *used)
         if (bytes > UNUSED_BYTES || ++n > MOST_UNUSED)
             g_ptr_array_remove_index(cache->instances, i);
     }
-}
-
-bool fl_style_cache_learn_patches(FlStyleCache *cache, const FlStyleInstance *style, GError **error)
-{
-    guint i;
-    if (!g_ptr_array_find(cache->instances, style, &i))
-        g_error("a style of another cache");
-    FlStyleInstance *instance = cache->instances->pdata[i];
-    return instance->patches || (instance->patches = fl_style_patches(style->path, error));
 }
 
 double fl_style_cache_bytes(const FlStyleCache *cache)

@@ -24,11 +24,6 @@ void fl_style_cache_free(FlStyleCache *cache); // NULL is fine
 const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSettings *settings,
                                           float texture_px, GError **error);
 
-/** Fills the `patches` of an instance, by which transport refines. FL_ERROR_STYLE,
- * FL_ERROR_NO_MEMORY. */
-bool fl_style_cache_learn_patches(FlStyleCache *cache, const FlStyleInstance *style,
-                                  GError **error);
-
 /** Frees instances that are not among the used ones, those asked for longest ago first, until the
  * others take no more than 384 MiB. */
 void fl_style_cache_trim(FlStyleCache *cache, GPtrArray *used);

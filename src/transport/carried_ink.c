@@ -7,7 +7,6 @@
 #include "base/schedule.h"
 #include "base/state_bytes.h"
 #include "transport/material_layers.h"
-#include "transport/refinement.h"
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -23,7 +22,6 @@ struct FlCarriedInk {
     FlCarriedInkInput input;
     float origin[2]; // of the region on the tile, px of the drawing
     FlMaterialLayers layers;
-    FlRefinement refinement;
     uint8_t (*colour)[3]; // by amount
 };
 
@@ -55,7 +53,6 @@ void fl_carried_ink_free(FlCarriedInk *ink)
     if (!ink)
         return;
     fl_material_layers_clear(&ink->layers);
-    fl_refinement_clear(&ink->refinement);
     free(ink->colour);
     g_free(ink);
 }
@@ -150,23 +147,6 @@ static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, const
         }
 }
 
-/* Brings the velocity of a strength of 1 up to date with the region's shape. */
-static bool refine(FlCarriedInk *ink, const FlGuides *guides, float *velocity, GError **error)
-{
-    const FlRefinementInput input = {ink->input.patches, &ink->input.tile->style, ink->input.scale,
-                                     ink->input.refine, fl_hash64(ink->input.seed)};
-    const size_t n = fl_rect_pixels(ink->layers.old.rect);
-    const float strength = (float)*ink->input.strength;
-    if (!fl_refinement_advance(&ink->refinement, &input, &ink->layers, guides, velocity, error))
-        return false;
-    for (size_t p = 0; p < n; p++) {
-        float *v = velocity + 2 * p;
-        v[0] *= strength, v[1] *= strength;
-        hold(v, FARTHEST * ink->input.scale);
-    }
-    return true;
-}
-
 /* ---- the ink -----------------------------------------------------------------------------------
  */
 
@@ -215,10 +195,7 @@ static bool find_map(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, FlF
         (layers->fresh.shift && !fl_material_whole(&layers->fresh, &layers->share, guides, reach,
                                                    whole + fl_rect_pixels(rect), error)))
         return false;
-    find_velocity(ink, guides, whole, ink->input.patches ? 1 : (float)*ink->input.strength,
-                  velocity);
-    if (ink->input.patches && !refine(ink, guides, velocity, error))
-        return false;
+    find_velocity(ink, guides, whole, (float)*ink->input.strength, velocity);
     fl_flow_map_run(map, velocity);
     return true;
 }
@@ -295,7 +272,6 @@ static bool advance(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, GErr
     if (rect.width > 0)
         return fl_material_layers_advance(&ink->layers, guides, rect, reach, error);
     fl_material_layers_clear(&ink->layers);
-    fl_refinement_clear(&ink->refinement);
     return true;
 }
 
@@ -345,9 +321,8 @@ bool fl_carried_ink_frame(FlCarriedInk *ink, const FlGuides *guides, uint8_t *rg
 /* ---- the state ---------------------------------------------------------------------------------
  */
 
-/* The bytes start with this; the shifts of the old layer and the motion follow, if there are two
- * layers, the shifts of the fresh one and the shares, and where frames are refined, the
- * refinement. */
+/* The bytes start with this; the shifts of the old layer and the motion follow, and if there are
+ * two layers, the shifts of the fresh one and the shares. */
 typedef struct Header {
     int32_t planes, x, y, width, height;
 } Header;
@@ -374,16 +349,13 @@ GBytes *fl_carried_ink_save(const FlCarriedInk *ink, GError **error)
     FlMaterial *kept[MOST_PLANES];
     const int planes = kept_planes(&layers, layers.share.shift, kept);
     const Header header = {planes, r.x, r.y, r.width, r.height};
-    const size_t end = sizeof header + (size_t)planes * plane;
-    const size_t size = end + (ink->input.patches ? fl_refinement_bytes(&ink->refinement) : 0);
+    const size_t size = sizeof header + (size_t)planes * plane;
     uint8_t *bytes = fl_alloc(size, 1, "the state of a region", error);
     if (!bytes)
         return NULL;
     memcpy(bytes, &header, sizeof header);
     for (int k = 0; k < planes && plane > 0; k++)
         memcpy(bytes + sizeof header + (size_t)k * plane, kept[k]->shift, plane);
-    if (ink->input.patches)
-        fl_refinement_write(&ink->refinement, bytes + end);
     return g_bytes_new_with_free_func(bytes, size, free, bytes);
 }
 
@@ -415,21 +387,12 @@ static bool load_planes(FlCarriedInk *ink, const Header *h, const uint8_t *bytes
     return true;
 }
 
-/* A region's plane is no longer than the frame's diagonal and some room. */
-static bool load_refinement(FlCarriedInk *ink, const uint8_t *bytes, size_t size, GError **error)
-{
-    const float side = (float)(ink->input.width + ink->input.height);
-    return fl_refinement_read(&ink->refinement, bytes, size, (int)(side / ink->input.scale) + 128,
-                              error);
-}
-
 bool fl_carried_ink_load(FlCarriedInk *ink, GBytes *state, GError **error)
 {
     size_t size;
     const uint8_t *bytes = g_bytes_get_data(state, &size);
     Header h;
     fl_material_layers_clear(&ink->layers);
-    fl_refinement_clear(&ink->refinement);
     if (!fl_state_bytes_header(state, &h, sizeof h, error))
         return false;
     const bool fits = h.x >= 0 && h.y >= 0 && h.width >= 0 && h.height >= 0 &&
@@ -438,13 +401,10 @@ bool fl_carried_ink_load(FlCarriedInk *ink, GBytes *state, GError **error)
     if (!fits || (h.planes != 2 && h.planes != MOST_PLANES)) // two more are of a second layer
         return fl_state_bytes_damaged("its material lies outside the frame", error);
     const size_t plane = 2 * fl_rect_pixels((FlRect){h.x, h.y, h.width, h.height}) * sizeof(float);
-    const size_t end = sizeof h + (size_t)h.planes * plane;
-    if (size < end || (size > end && !ink->input.patches))
+    if (size != sizeof h + (size_t)h.planes * plane)
         return fl_state_bytes_damaged("it has another size", error);
-    if ((plane == 0 || load_planes(ink, &h, bytes + sizeof h, error)) &&
-        (!ink->input.patches || load_refinement(ink, bytes + end, size - end, error)))
+    if (plane == 0 || load_planes(ink, &h, bytes + sizeof h, error))
         return true;
     fl_material_layers_clear(&ink->layers);
-    fl_refinement_clear(&ink->refinement);
     return false;
 }

@@ -3,7 +3,6 @@
 #define FLUIDY_TRANSPORT_CARRIED_INK_H
 
 #include "guides/guides.h"
-#include "transport/sliced.h"
 #include "transport/tile.h"
 
 /** The colour of ink on its paper. */
@@ -13,13 +12,11 @@ typedef struct FlInkColour {
 } FlInkColour;
 
 typedef struct FlCarriedInkInput {
-    const FlTile *tile;      // borrowed
-    int width, height;       // of what is painted
-    const FlSliced *patches; // of the style, for the refinement of each frame; NULL: no refinement
-    int refine;              // iterations a frame
-    float scale;             // px of the drawing per px of the tile
-    const double *strength;  // borrowed: factor on the motion of ink in the next frame; 0: flat
-    uint64_t seed;           // decides where on the tile the region lies
+    const FlTile *tile;     // borrowed
+    int width, height;      // of what is painted
+    float scale;            // px of the drawing per px of the tile
+    const double *strength; // borrowed: factor on the motion of ink in the next frame; 0: flat
+    uint64_t seed;          // decides where on the tile the region lies
     FlInkColour colour;
 } FlCarriedInkInput;
 

@@ -70,30 +70,28 @@ static inline void scatter_gradient(const FlFlowMap *map, float *f, int channels
     f[channels * at(map, x, up)] -= by_dy * 0.5f;
 }
 
-void fl_velocity(const FlFlowMap *map, const float *potential, const float *taper,
-                 FlTransportMode mode, float *velocity)
+void fl_velocity(const FlFlowMap *map, const float *potential, FlTransportMode mode,
+                 float *velocity)
 {
 #pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(at(map, 0, map->height)))
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++) {
             const size_t p = at(map, x, y);
-            const float t = taper ? taper[p] : 1;
             float dx, dy;
             gradient(map, potential, 1, x, y, &dx, &dy);
-            velocity[2 * p] = t * (mode == FL_TRANSPORT_GATHER ? dx : dy);
-            velocity[2 * p + 1] = t * (mode == FL_TRANSPORT_GATHER ? dy : -dx);
+            velocity[2 * p] = (mode == FL_TRANSPORT_GATHER ? dx : dy);
+            velocity[2 * p + 1] = (mode == FL_TRANSPORT_GATHER ? dy : -dx);
         }
 }
 
-void fl_velocity_adjoint(const FlFlowMap *map, const float *by_velocity, const float *taper,
-                         FlTransportMode mode, float *by_potential)
+void fl_velocity_adjoint(const FlFlowMap *map, const float *by_velocity, FlTransportMode mode,
+                         float *by_potential)
 {
     memset(by_potential, 0, sizeof(float) * map->width * (size_t)map->height);
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++) {
             const size_t p = at(map, x, y);
-            const float t = taper ? taper[p] : 1;
-            const float vx = t * by_velocity[2 * p], vy = t * by_velocity[2 * p + 1];
+            const float vx = by_velocity[2 * p], vy = by_velocity[2 * p + 1];
             scatter_gradient(map, by_potential, 1, x, y, mode == FL_TRANSPORT_GATHER ? vx : -vy,
                              mode == FL_TRANSPORT_GATHER ? vy : vx);
         }

@@ -28,15 +28,14 @@ bool fl_flow_map_init(FlFlowMap *map, int width, int height, bool periodic, GErr
 void fl_flow_map_clear(FlFlowMap *map);
 
 /**
- * The velocity of a potential, px: width * height * 2. taper: its share by pixel, which keeps ink
- * in the region; NULL: 1.
+ * The velocity of a potential, px: width * height * 2.
  */
-void fl_velocity(const FlFlowMap *map, const float *potential, const float *taper,
-                 FlTransportMode mode, float *velocity);
+void fl_velocity(const FlFlowMap *map, const float *potential, FlTransportMode mode,
+                 float *velocity);
 
 /** The adjoint: writes the derivative by the potential. */
-void fl_velocity_adjoint(const FlFlowMap *map, const float *by_velocity, const float *taper,
-                         FlTransportMode mode, float *by_potential);
+void fl_velocity_adjoint(const FlFlowMap *map, const float *by_velocity, FlTransportMode mode,
+                         float *by_potential);
 
 /** Fills u and jacobian. */
 void fl_flow_map_run(FlFlowMap *map, const float *velocity);

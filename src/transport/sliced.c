@@ -253,38 +253,19 @@ void fl_sliced_free(FlSliced *sliced)
 /* ---- loss --------------------------------------------------------------------------------------
  */
 
-static bool is_whole(const float *coverage, int width, int height, uint32_t place)
-{
-    float patch[PATCH_PIXELS];
-    read_patch(coverage, width, height, place, patch);
-    for (int i = 0; i < PATCH_PIXELS; i++)
-        if (patch[i] <= 0.98f)
-            return false;
-    return true;
-}
-
-/* Of a level whose coverage is NULL or width * height. */
-static GArray *places_of(const float *coverage, int width, int height)
+static GArray *places_of(int width, int height)
 {
     GArray *places = g_array_new(FALSE, FALSE, sizeof(uint32_t));
     for (uint32_t place = 0; place < (uint32_t)(width * height); place++)
-        if (!coverage || is_whole(coverage, width, height, place))
-            g_array_append_val(places, place);
+        g_array_append_val(places, place);
     return places;
 }
 
-bool fl_sliced_places_init(FlSlicedPlaces *places, const float *coverage, int width, int height,
-                           GError **error)
+void fl_sliced_places_init(FlSlicedPlaces *places, int width, int height)
 {
-    g_auto(Pyramid) pyramid = {0};
     *places = (FlSlicedPlaces){.width = width, .height = height};
-    if (coverage && !pyramid_init(&pyramid, width, height, error))
-        return false;
-    if (coverage)
-        fill_pyramid(&pyramid, coverage);
     for (int l = 0; l < FL_SLICED_LEVELS; l++)
-        places->level[l] = places_of(pyramid.plane[l], width >> l, height >> l);
-    return true;
+        places->level[l] = places_of(width >> l, height >> l);
 }
 
 void fl_sliced_places_clear(FlSlicedPlaces *places)
@@ -374,8 +355,7 @@ static float level_loss(const FlSliced *sliced, int l, const float *plane, int w
 }
 
 float fl_sliced_loss(const FlSliced *sliced, const FlSlicedTarget *target, unsigned levels,
-                     int samples, int directions, uint64_t key, float *by_density,
-                     float *levels_loss, GError **error)
+                     int samples, int directions, uint64_t key, float *by_density, GError **error)
 {
     g_auto(Pyramid) density = {0}, by = {0};
     const int width = target->places->width, height = target->places->height;
@@ -394,8 +374,6 @@ float fl_sliced_loss(const FlSliced *sliced, const FlSlicedTarget *target, unsig
                               fl_key(key, (uint64_t)l), by.plane[l], error);
         if (loss < 0)
             return -1;
-        if (levels_loss)
-            levels_loss[l] = loss;
         total += loss;
     }
     if (by_density)

@@ -30,12 +30,8 @@ typedef struct FlSlicedPlaces {
     GArray *level[FL_SLICED_LEVELS]; // of uint32_t
 } FlSlicedPlaces;
 
-/**
- * Whole patches where the coverage, 0 … 1, is above .98; NULL: everywhere. Sides are multiples of
- * 1 << (FL_SLICED_LEVELS - 1). FL_ERROR_NO_MEMORY.
- */
-bool fl_sliced_places_init(FlSlicedPlaces *places, const float *coverage, int width, int height,
-                           GError **error);
+/** All places. Sides are multiples of 1 << (FL_SLICED_LEVELS - 1). */
+void fl_sliced_places_init(FlSlicedPlaces *places, int width, int height);
 void fl_sliced_places_clear(FlSlicedPlaces *places);
 
 /** A density to be judged. */
@@ -49,12 +45,11 @@ typedef struct FlSlicedTarget {
  * drawn by `key`, on the levels of the bit set, summed; a level with fewer than 64 places for
  * patches does not count. Everything is periodic.
  *
- * by_density: the derivative is written; NULL: it is not wanted. levels_loss: by level; or NULL.
- * Returns: below 0 with FL_ERROR_NO_MEMORY set.
+ * by_density: the derivative is written; NULL: it is not wanted.  * Returns: below 0 with
+ * FL_ERROR_NO_MEMORY set.
  */
 float fl_sliced_loss(const FlSliced *sliced, const FlSlicedTarget *target, unsigned levels,
-                     int samples, int directions, uint64_t key, float *by_density,
-                     float *levels_loss, GError **error);
+                     int samples, int directions, uint64_t key, float *by_density, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSliced, fl_sliced_free)
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlSlicedPlaces, fl_sliced_places_clear)

@@ -48,8 +48,6 @@ static const Stage stir_stages[] = {
     {0},
 };
 
-static const Stage refine_stage = {0, LEVELS(0, 3), LEVELS(0, 3), 0.03f, true};
-
 /* Adam's moments of one grid [Kingma15]. */
 typedef struct Moments {
     float *first, *second;
@@ -93,10 +91,9 @@ static bool solver_init(Solver *solver, const FlTransportProblem *problem, FlPot
 {
     const size_t n = (size_t)problem->width * problem->height;
     *solver = (Solver){.problem = problem, .potential = potential};
+    fl_sliced_places_init(&solver->places, problem->width, problem->height);
     return fl_potential_init(&solver->by_node, problem->width, problem->height, error) &&
            fl_flow_map_init(&solver->map, problem->width, problem->height, true, error) &&
-           fl_sliced_places_init(&solver->places, problem->coverage, problem->width,
-                                 problem->height, error) &&
            (solver->sum = fl_alloc(n, sizeof(float), "a potential", error)) &&
            (solver->carried = fl_alloc(n, sizeof(float), "a density", error)) &&
            (solver->by_carried = fl_alloc(n, sizeof(float), "a derivative", error)) &&
@@ -131,8 +128,7 @@ static void add_noise(FlPotential *potential, uint64_t key)
         }
 }
 
-/* Adds what the velocity's size and change cost to the derivative: of what is solved, so that what
- * was there besides stays where no patch says anything. */
+/* Adds what the velocity's size and change cost to the derivative. */
 static void add_smoothness(Solver *solver)
 {
     const int w = solver->problem->width, h = solver->problem->height;
@@ -185,26 +181,16 @@ static float patches_loss(Solver *solver, unsigned levels, uint64_t key, GError 
     const FlTransportProblem *problem = solver->problem;
     const FlSlicedTarget target = {solver->carried, &solver->places};
     return fl_sliced_loss(problem->style, &target, levels, SAMPLES, DIRECTIONS, key,
-                          solver->by_carried, NULL, error);
-}
-
-static void add_to(float *sum, const float *more, size_t n)
-{
-    for (size_t i = 0; more && i < n; i++)
-        sum[i] += more[i];
+                          solver->by_carried, error);
 }
 
 /* The loss of the potential as it is; its derivative by node into by_node. */
 static float derive(Solver *solver, unsigned levels, uint64_t key, GError **error)
 {
     const FlTransportProblem *problem = solver->problem;
-    const size_t n = (size_t)problem->width * (size_t)problem->height;
     fl_potential_sum(solver->potential, solver->sum);
-    add_to(solver->sum, problem->before, n);
-    fl_velocity(&solver->map, solver->sum, problem->taper, problem->mode, solver->velocity);
-    memcpy(solver->by_velocity, solver->velocity, 2 * n * sizeof(float)); // as scratch
-    add_to(solver->by_velocity, problem->velocity, 2 * n);
-    fl_flow_map_run(&solver->map, solver->by_velocity);
+    fl_velocity(&solver->map, solver->sum, problem->mode, solver->velocity);
+    fl_flow_map_run(&solver->map, solver->velocity);
     fl_flow_map_carry(&solver->map, problem->density, solver->carried);
     const float loss =
         problem->picture ? picture_loss(solver) : patches_loss(solver, levels, key, error);
@@ -213,8 +199,7 @@ static float derive(Solver *solver, unsigned levels, uint64_t key, GError **erro
                                          solver->by_jacobian, solver->by_velocity, error))
         return -1;
     add_smoothness(solver);
-    fl_velocity_adjoint(&solver->map, solver->by_velocity, problem->taper, problem->mode,
-                        solver->sum);
+    fl_velocity_adjoint(&solver->map, solver->by_velocity, problem->mode, solver->sum);
     fl_potential_adjoint(solver->sum, &solver->by_node);
     return loss;
 }
@@ -286,13 +271,4 @@ bool fl_transport_solve(const FlTransportProblem *problem, float effort, FlPoten
         if (!run_stage(&solver, s, (int)((float)s->iterations * effort), &report, error))
             return false;
     return true;
-}
-
-bool fl_transport_refine(const FlTransportProblem *problem, int iterations, FlPotential *potential,
-                         GError **error)
-{
-    g_auto(Solver) solver = {0};
-    Report nobody = {0};
-    return solver_init(&solver, problem, potential, error) &&
-           run_stage(&solver, &refine_stage, iterations, &nobody, error);
 }

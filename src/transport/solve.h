@@ -13,11 +13,7 @@ typedef struct FlTransportProblem {
     const FlSliced *style;
     const float
         *picture; // ink is to look like this, width * height of mean 1; NULL: like the style
-    const float *density;  // before the transport, mean 1; NULL: 1 everywhere
-    const float *coverage; // weight of its patches, 0 … 1; NULL: 1
-    const float *taper;    // share of the velocity by pixel; NULL: 1
-    const float *velocity; // an additional velocity, tapered, 2 by pixel; may be NULL
-    const float *before;   // an additional potential; may be NULL
+    const float *density; // before the transport, mean 1; NULL: 1 everywhere
     FlTransportMode mode;
     float pace; // factor on the steps: 1 draws clean bands, 3 reaches the wide features of a wash
     uint64_t key;
@@ -32,12 +28,5 @@ typedef struct FlTransportProblem {
  */
 bool fl_transport_solve(const FlTransportProblem *problem, float effort, FlPotential *potential,
                         FlTransportProgress progress, void *data, GError **error);
-
-/**
- * Brings what is there already nearer to the style, all grids and the finer levels at once: the
- * potential, made by the caller and 0, is what is to be added. FL_ERROR_NO_MEMORY.
- */
-bool fl_transport_refine(const FlTransportProblem *problem, int iterations, FlPotential *potential,
-                         GError **error);
 
 #endif
