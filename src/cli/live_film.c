@@ -123,7 +123,8 @@ static bool on_progress(const FlProgress *progress, void *data)
 static void on_warning(const char *message, void *data)
 {
     FlLiveFilm *film = data;
-    send(film, film->calls.warning, message, 0, 0);
+    if (film->job->work != FL_LIVE_SAMPLE) // of a style that was not chosen
+        send(film, film->calls.warning, message, 0, 0);
 }
 
 static void on_reads(const char *path, void *data)
