@@ -25,7 +25,7 @@ static void paint(FlRenderOptions options)
     g_assert_no_error(error);
 }
 
-static void options_without_a_size_are_refused(void)
+static void options_that_lack_something_are_refused(void)
 {
     const char *const inputs[] = {"d_1.svg", NULL};
     const FlRenderOptions options = {.inputs = inputs};
@@ -33,6 +33,12 @@ static void options_without_a_size_are_refused(void)
     g_assert_false(fl_render(&options, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
     g_assert_nonnull(strstr(error->message, "sizeof(FlRenderOptions)"));
+    g_clear_error(&error);
+    const FlSetting style[] = {{"style", "01"}}; // its region is missing
+    const FlRenderOptions other = {
+        .size = sizeof other, .inputs = inputs, .settings = style, .n_settings = 1};
+    g_assert_false(fl_render(&other, &error));
+    g_assert_nonnull(strstr(error->message, "expected a region or NULL"));
 }
 
 static void the_number_of_threads_is_the_render_s_own(void)
@@ -160,7 +166,7 @@ int main(int argc, char **argv)
     g_setenv("G_TEST_SRCDIR", g_getenv("FLUIDY_FIXTURES"), true);
     g_test_init(&argc, &argv, NULL);
 #define TEST(name) g_test_add_func("/render/" #name, name)
-    TEST(options_without_a_size_are_refused);
+    TEST(options_that_lack_something_are_refused);
     TEST(the_number_of_threads_is_the_render_s_own);
     TEST(nothing_jumps_while_a_shape_fades);
     TEST(holes_in_dry_paint_show_the_paint_below);

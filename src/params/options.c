@@ -199,11 +199,19 @@ bool fl_options_take(const FlRenderOptions *given, FlRenderOptions *known, GErro
     *known = (FlRenderOptions){0};
     memcpy(known, given, MIN(given->size, sizeof *known));
     known->size = sizeof *known;
-    if (given->size >= FIRST_SIZE)
-        return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "‘size’ is too small; expected sizeof(FlRenderOptions)");
-    return false;
+    size_t i = 0;
+    while (given->size >= FIRST_SIZE && i < known->n_settings && known->settings[i].name &&
+           known->settings[i].value)
+        i++;
+    if (given->size < FIRST_SIZE)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "‘size’ is too small; expected sizeof(FlRenderOptions)");
+    else if (i < known->n_settings)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "‘settings’[%zu]: expected a region or NULL, a name such as “style” and a "
+                    "value, in this order",
+                    i);
+    return given->size >= FIRST_SIZE && i == known->n_settings;
 }
 
 FlCaller fl_caller_of(const FlRenderOptions *options)

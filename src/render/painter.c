@@ -410,9 +410,8 @@ bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], 
 static bool load_state(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], GError **error)
 {
     if (!fl_reuse_load(&painter->reuse, parts[2], parts[0])) {
-        g_set_error(
-            error, FL_ERROR, FL_ERROR_CHANGED,
-            "its paint was taken from the cache, and is gone; use ‘overwrite’ to start anew");
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                    "the cache no longer has its last paint; use ‘overwrite’ to start anew");
         return false;
     }
     return painter->origin == FL_FROM_CACHE || catch_up(painter, error);

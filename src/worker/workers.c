@@ -316,7 +316,7 @@ static void set_error(const Worker *w, const Outcome *end, const FlRequest *r, G
                               (int)fl_limit(FL_LIMIT_SECONDS) * (end->late ? FL_WORKER_WALL : 1));
     } else if (number == SIGKILL) {
         code = FL_ERROR_NO_MEMORY;
-        why = g_strdup_printf("the process that was %s it was killed", work);
+        why = g_strdup_printf("%s it failed: the process that did so was killed", work);
     } else if (number == 0) {
         why = g_strdup_printf("%s it, what was found could not be handed over: %s", work,
                               g_strerror(WEXITSTATUS(end->status)));
