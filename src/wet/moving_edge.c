@@ -198,12 +198,26 @@ static bool find_motion(const FlWetShape *shape, FlEdgePoint *point)
     return false;
 }
 
+/** The depth that the place a point comes from had in the frame before. */
+static float depth_before(const FlWetShape *shape, const FlEdgePoint *point, float u, float v)
+{
+    return fl_wet_plane_at(shape->distance_before, shape->rect, point->x - u, point->y - v);
+}
+
+/** A point of a shape that spins goes on with the whole shape, as far as that brings the contour to
+ * where it was: a ball passes straight on, though its paint turns. */
+static void leave_out_spin(const FlWetShape *shape, float u, float v, FlEdgePoint *point)
+{
+    const float missed = point->depth - depth_before(shape, point, u, v);
+    const float share = fl_bell(missed / shape->px);
+    point->u += share * (u - point->u), point->v += share * (v - point->v);
+}
+
 /** The normal part of the motion, and growth that the motion does not explain. */
 static void find_speed(const FlWetShape *shape, bool known, FlEdgePoint *point)
 {
     const float page = FL_WET_PAGE_PX * shape->px, most = 0.05f * page * shape->frames;
-    const float before = fl_wet_plane_at(shape->distance_before, shape->rect, point->x - point->u,
-                                         point->y - point->v);
+    const float before = depth_before(shape, point, point->u, point->v);
     float ground[2];
     fl_wet_ground(shape, point->x, point->y, ground);
     point->u -= ground[0], point->v -= ground[1];
@@ -225,14 +239,27 @@ static void find_width(const FlWetShape *shape, const float *distance, FlEdgePoi
     point->half_width = depth;
 }
 
+/** Half the way over a shape from a point that it leaves, along its motion. */
+static float half_way_over(const FlWetShape *shape, const FlEdgePoint *point)
+{
+    const float most = 52 * shape->px, slow = 0.5f * shape->px;
+    const float dx = point->u - slow * point->nx, dy = point->v - slow * point->ny;
+    const float length = sqrtf(dx * dx + dy * dy) + 1e-6f;
+    float way = 1.5f;
+    while (way < most && coverage_at(shape, (int)(point->x + way * dx / length + 0.5f),
+                                     (int)(point->y + way * dy / length + 0.5f)) > 0.5f)
+        way++;
+    return 0.5f * way;
+}
+
 /** The share of its paint that the paper keeps: less of thin and fast strokes, none of shapes that
  * shrink without a motion that explains it, more of those that rested. */
 static void find_kept(const FlWetShape *shape, float speed_before, FlEdgePoint *point)
 {
-    const float px = shape->px, width = MAX(point->half_width, 2 * px);
+    const float px = shape->px, width = MAX(half_way_over(shape, point), 2 * px);
     const float moved = sqrtf(point->u * point->u + point->v * point->v);
     const float speed = moved / shape->frames, shrunk = MAX(-point->speed, 0) * shape->frames;
-    const float contact = 1 - fl_fall(MIN(6, 2 * width / MAX(speed, px)) / 1.5f);
+    const float contact = 1 / (1 + 1.5f * speed / width);
     const float rested = 0.8f + 0.4f * fl_bell(speed_before / px);
     point->kept = fl_bell(speed / (2.2f * width)) * contact * rested *
                   (1 - fl_ease(1.3f, 2, shrunk / (moved + 3 * px)));
@@ -338,12 +365,25 @@ static const FlEdgePoint *point_before(const FlWetShape *shape, const FlMovingEd
     return nearest >= 0 ? &before->point[nearest] : NULL;
 }
 
-/** The motion is smoothed in time; strength and ink go over from the frame before. */
-static void find_point(const FlWetShape *shape, const FlMovingEdge *before, FlMovingEdge *edge,
-                       FlEdgePoint *point)
+/** Finds the motion of each point as far as it is known, and counts these. */
+static void find_motions(const FlWetShape *shape, FlMovingEdge *edge, bool *known)
 {
-    const bool known = find_motion(shape, point);
-    edge->known += known;
+    float u = 0, v = 0;
+    for (int i = 0; i < edge->n; i++) {
+        known[i] = find_motion(shape, &edge->point[i]);
+        edge->known += known[i];
+        u += edge->point[i].u, v += edge->point[i].v;
+    }
+    const float n = (float)MAX(edge->known, 1);
+    for (int i = 0; i < edge->n; i++)
+        if (known[i])
+            leave_out_spin(shape, u / n, v / n, &edge->point[i]);
+}
+
+/** The motion is smoothed in time; strength and ink go over from the frame before. */
+static void find_point(const FlWetShape *shape, const FlMovingEdge *before, bool known,
+                       const FlMovingEdge *edge, FlEdgePoint *point)
+{
     find_speed(shape, known, point);
     find_width(shape, edge->distance, point);
     find_ink(shape, point);
@@ -361,8 +401,10 @@ bool fl_moving_edge_init(FlMovingEdge *edge, const FlWetShape *shape, const FlMo
     if (!fl_moving_edge_look(edge, shape, error))
         return false;
     g_autofree Links *links = g_new0(Links, MAX(edge->n, 1));
+    g_autofree bool *known = g_new(bool, MAX(edge->n, 1));
+    find_motions(shape, edge, known);
     for (int i = 0; i < edge->n; i++)
-        find_point(shape, before, edge, &edge->point[i]);
+        find_point(shape, before, known[i], edge, &edge->point[i]);
     link_points(shape->rect, edge, links);
     smooth(shape, edge, links);
     for (int i = 0; i < edge->n; i++)

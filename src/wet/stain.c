@@ -16,22 +16,19 @@ typedef struct Passing {
 
 #define MOST_STEPS 12
 
-/** The depth of the pixel below the painted edge at a time from 0, the frame before, to 1. */
+/** The depth of the pixel below the painted edge at a time from 0, the frame before, to 1: between
+ * that of both shapes, each moved to where it is at the time. */
 static float depth_at(const Passing *pixel, float time)
 {
     const FlWetShape *shape = pixel->shape;
-    const bool before = time <= 0;
-    const float left = before ? 0 : 1 - time;
-    float ground[2] = {0, 0};
-    if (before)
-        fl_wet_ground(shape, pixel->x, pixel->y, ground);
-    const float x = pixel->x - ground[0] + left * pixel->point->u;
-    const float y = pixel->y - ground[1] + left * pixel->point->v;
-    const FlRect rect = shape->rect;
-    if (x < 0 || y < 0 || x > (float)rect.width - 1 || y > (float)rect.height - 1)
-        return -1e6f;
-    return fl_wet_plane_at(before ? shape->distance_before : pixel->distance, rect, x, y) -
-           pixel->inset;
+    const float x = pixel->x, y = pixel->y, u = pixel->point->u, v = pixel->point->v;
+    float ground[2];
+    fl_wet_ground(shape, x, y, ground);
+    const float before = fl_wet_plane_at(shape->distance_before, shape->rect,
+                                         x - ground[0] - time * u, y - ground[1] - time * v);
+    const float now =
+        fl_wet_plane_at(pixel->distance, shape->rect, x + (1 - time) * u, y + (1 - time) * v);
+    return before + time * (now - before) - pixel->inset;
 }
 
 /** The times at which a pixel was covered. */
@@ -52,13 +49,32 @@ static Cover cover_in_time(const Passing *pixel, float moved)
             const float crossed = depth / MAX(depth - later, 1e-3f);
             cover.last = ((float)k + CLAMP(crossed, 0, 1)) / (float)steps;
         }
-        if (depth >= cover.most || (k == 0 && depth > 0))
-            cover.most = MAX(depth, cover.most), cover.when = (float)k / (float)steps;
+        if (depth >= cover.most)
+            cover.most = depth, cover.when = (float)k / (float)steps;
         later = depth;
     }
     if (cover.last < 0)
         cover.last = cover.when;
     return cover;
+}
+
+/** The depth of a pixel between the sides of the way that paint takes over it: the greatest in the
+ * shape as it is now, of all places that the pixel would come to if it went with the edge. */
+static float depth_between_sides(const Passing *pixel)
+{
+    enum { LOOKS = 8 };
+    const FlEdgePoint *point = pixel->point;
+    const float more =
+        point->speed * pixel->shape->frames - (point->u * point->nx + point->v * point->ny);
+    const float u = point->u + more * point->nx, v = point->v + more * point->ny;
+    const float far = 2.5f * MAX(point->half_width, 1) / sqrtf(u * u + v * v + 1e-6f);
+    float most = -1e6f;
+    for (int k = 1; k <= LOOKS; k++) {
+        const float way = far * (float)k / LOOKS;
+        most = MAX(most, fl_wet_plane_at(pixel->distance, pixel->shape->rect, pixel->x + way * u,
+                                         pixel->y + way * v));
+    }
+    return most - pixel->inset;
 }
 
 static float cover_of(float depth)
@@ -69,6 +85,13 @@ static float cover_of(float depth)
 static float between(float before, float now, float share)
 {
     return before + share * (now - before);
+}
+
+/** 1 where a stain takes the place of fronts; near its sides, where it breaks up, they stay and dry
+ * by themselves. */
+static float away_from_sides(const FlWetShape *shape, float depth)
+{
+    return fl_ease(0, 8 * shape->px, depth);
 }
 
 /** A mark lasts from the frame before to this one, and so do its strength and its ink: in one piece
@@ -82,33 +105,41 @@ static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, floa
     const Cover cover = cover_in_time(pixel, moved);
     if (cover.most < -1.2f || cover.most < now + 0.01f)
         return;
-    const float lost = cover_of(cover.most) - cover_of(now);
     const float far = MAX(-now, 0) / (moved + 3 * shape->px);
+    const float depth = MAX(cover.most, depth_between_sides(pixel));
+    const float kept =
+        (1 - fl_ease(1.3f, 2, far)) * between(point->kept_before, point->kept, cover.last);
+    const float sides = fl_ease(0, 0.25f, kept) * (1 - away_from_sides(shape, depth));
     FlStainMark mark = {.at = at,
-                        .lost = lost,
+                        .lost = (cover_of(cover.most) - cover_of(now)) * (1 - sides),
                         .age = shape->frames * (1 - cover.last),
-                        .depth = CLAMP(cover.most, -2, 2)};
-    mark.charge = dials->stain * (1 - cover_of(now)) * (1 - fl_ease(1.3f, 2, far)) *
-                  fl_ease(0, 0.1f, cover.most - now) *
-                  between(point->kept_before, point->kept, cover.last);
+                        .depth = CLAMP(depth, -2, 14 * shape->px)};
+    mark.charge = dials->stain * kept * (1 - cover_of(now)) * fl_ease(0, 0.1f, cover.most - now);
     for (int c = 0; c < 3; c++)
         mark.ink[c] = between(point->ink_before[c], point->ink[c], cover.last);
     g_array_append_val(marks, mark);
 }
 
+/** 0..1: an edge recedes. */
+static float recedes(const FlWetShape *shape, const FlEdgePoint *point)
+{
+    return 1 - fl_fall(MAX(-point->speed, 0) / (2 * shape->px));
+}
+
 /** The stain begins below the rim of a receding edge, so that no bare paper shows there. */
 static float under(const FlWetShape *shape, const FlEdgePoint *point)
 {
-    const float recedes = 1 - fl_fall(MAX(-point->speed, 0) / (2 * shape->px));
-    return recedes * MIN(6 * shape->px, 0.4f * point->half_width);
+    return recedes(shape, point) * MIN(6 * shape->px, 0.4f * point->half_width);
 }
 
 /** Wets a cell below the rim of a receding edge until it is uncovered: a hole there shows paint. */
-static void wet_below(const FlEdgePoint *point, const FlWetDials *dials, int32_t at, float depth,
+static void wet_below(const Passing *pixel, const FlWetDials *dials, int32_t at, float depth,
                       GArray *fronts)
 {
-    FlFrontMark mark = {.at = at, .density = MIN(dials->stain, 1) * cover_of(depth), .edge = 3};
-    memcpy(mark.ink, point->ink, sizeof mark.ink);
+    const float kept = MIN(dials->stain * pixel->point->kept, 1);
+    const float away = away_from_sides(pixel->shape, depth_between_sides(pixel));
+    FlFrontMark mark = {.at = at, .density = kept * away * cover_of(depth), .edge = 3};
+    memcpy(mark.ink, pixel->point->ink, sizeof mark.ink);
     if (mark.density > 0)
         g_array_append_val(fronts, mark);
 }
@@ -134,11 +165,12 @@ void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
             const int32_t at = (rect.y + y) * shape->page.width + rect.x + x;
             pass(&pixel, dials, at, now, marks);
             if (below > 0.5f)
-                wet_below(point, dials, at, edge->distance[p] - inset, fronts);
+                wet_below(&pixel, dials, at, edge->distance[p] - inset, fronts);
         }
 }
 
-/** The share of an earlier front that stays where the shape has gone on to a distance. */
+/** The share of an earlier front that stays: as much as the paper keeps of the paint that leaves.
+ */
 static float stays(const FlWetShape *shape, const FlMovingEdge *edge, int x, int y)
 {
     const FlRect rect = shape->rect;
@@ -149,7 +181,8 @@ static float stays(const FlWetShape *shape, const FlMovingEdge *edge, int x, int
         return 1;
     const FlEdgePoint *point = &edge->point[edge->nearest[p]];
     const float moved = sqrtf(point->u * point->u + point->v * point->v);
-    return 1 - fl_ease(1, 1.5f, -edge->distance[p] / (moved + 24 * shape->px));
+    const float gone = fl_ease(1, 1.5f, -edge->distance[p] / (moved + 24 * shape->px));
+    return (1 - gone) * (1 - recedes(shape, point) * (1 - MIN(point->kept, 1)));
 }
 
 void fl_marks_lose_fronts(const FlWetShape *shape, const FlMovingEdge *edge, const GArray *fronts,

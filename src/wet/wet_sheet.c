@@ -8,6 +8,7 @@
 #define FRONT_FRAMES 2.2f // in which a front dries
 #define GONE_FRAMES 36    // after which a stain is gone
 #define STRENGTH 0.9f     // of absorbances on the paper
+#define FRAYED_PX 10      // px of the page to which the sides of a stain break up, at most
 
 /** The grain of the paper, once for the film: the pictures have the sheet's. */
 static void find_grain(FlWetSheet *sheet)
@@ -398,12 +399,13 @@ static void read_grain(const FlWetSheet *sheet, int x, int y, FlColumns columns,
     }
 }
 
-/** The marks are as sharp as the px: a front ends where its edge is 0, a stain where its depth is.
- */
+/** A front is as sharp as the px: it ends where its edge is 0. A stain breaks up towards its sides
+ * with the paper's grain, but not where a front is still wet. */
 static void shine_through(const FlWetSheet *sheet, FlColumns columns, const LayerRows *rows)
 {
     float *const *m = rows->px;
-    const float cell_px = (float)sheet->cell_px;
+    const float cell_px = (float)sheet->cell_px, fray = FRAYED_PX * sheet->px;
+    const float soft = 0.3f * fray * cell_px;
 #pragma omp simd
     for (int x = columns.first; x < columns.last; x++) {
         const float hollow = rows->hollow[x], spot = rows->spot[x];
@@ -419,7 +421,9 @@ static void shine_through(const FlWetSheet *sheet, FlColumns columns, const Laye
         const float film = m[FILM][x] * fl_ease(0, 0.9f, (1.2f + 3.6f * late - age) / 1.6f);
         const float coarse = CLAMP(1 - 0.55f * g + 1.1f * g * (hollow - 0.5f), 0.1f, 1.4f);
         const float pigment = m[STAIN][x] * left_of(sheet, age, hollow) * coarse;
-        const float sides = CLAMP(m[DEPTH][x] * cell_px + 0.5f, 0, 1) / stains;
+        const float frayed =
+            fray * (1 - 0.4f * hollow - 0.6f * spot) * (1 - MIN(3 * m[FRONT][x], 1));
+        const float sides = fl_ease(-0.5f, soft, (m[DEPTH][x] - frayed) * cell_px) / stains;
         const float stain = MIN(sides * (film + pigment - film * pigment / stains), 1);
         const float dense = STRENGTH * (1 - (1 - stain) * (1 - front)) / paint;
         rows->through[0][x] = fl_fall(dense * m[INK][x]);

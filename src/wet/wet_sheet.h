@@ -18,10 +18,10 @@ typedef struct FlFrontMark {
 /** A cell that paint has left. */
 typedef struct FlStainMark {
     int32_t at;
-    float lost;   // share of the cell, 0..1
+    float lost;   // share of the cell's fronts that goes, 0..1
     float charge; // of paint on the paper
     float age;    // frames since it was uncovered
-    float depth;  // cells that the paint reached beyond the middle of the cell
+    float depth;  // of the cell between the sides of the paint's way
     float ink[3];
 } FlStainMark;
 
