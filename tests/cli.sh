@@ -116,8 +116,9 @@ printf '[region read-aa3311]\nhold = 2\n' >odd.conf
     grep -q 'warning: odd.conf:1: \[region read-aa3311\]' err
 result $? 'a section that matches no region is a warning, with some frames of the film, too'
 "$program" whole -s 01 --style-frames 1 --dry-run >out 2>err &&
-    [ "$(grep -c '/01: one frame is used: its paint does not flow' err)" = 1 ]
-result $? 'a style of one frame is a warning'
+    [ "$(grep -c '/01: one frame is used: its paint does not flow' err)" = 1 ] &&
+    "$program" whole -s 15 --dry-run >out 2>err && ! grep -q 'does not flow' err
+result $? 'a style of one frame is a warning, unless a fluid moves its paint'
 "$program" whole -s 01 --dry-run >out 2>err && [ ! -d fluidy ] &&
     grep -q 'would paint 3 frames of 64x48 pixels, 1 region: fluidy/w_%04d.png' err
 result $? '--dry-run says what would be painted'

@@ -17,6 +17,7 @@ static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GErro
         if (p->style == style)
             return true;
     if (painted->engine->plays && style->exemplar->level[0].n_frames == 1 &&
+        painted->settings.fluid <= FL_FLUID_NONE &&
         !fl_warn(&plan->caller, error, FL_ERROR_STYLE,
                  "%s: one frame is used: its paint does not flow", style->path))
         return false;
