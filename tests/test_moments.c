@@ -39,6 +39,8 @@ static void numbers_lie_between(void)
         {"#000", "#fff", .5, "rgba(128, 128, 128, 1)"},
         {"red", "rgba(0, 0, 255, 0)", .5, "rgba(255, 0, 0, 0.5)"},
         {"10px", "50%", .5, "calc((10px) * 0.5 + (50%) * 0.5)"},
+        {"inset(0 0 4px)", "inset(0 80% 0)", .5, "inset(0 40% 2px)"},
+        {"oklch(60% .2 30)", "oklch(60% .2 210)", .5, "rgb(128, 128, 128)"},
         {"visible", "hidden", .5, NULL},
         {"M0 0h9", "M0 0v9", .5, NULL},
         {"translate3d(0px, 0px, 0px)", "translate3d(4px, 0px, 0px)", .5,
@@ -100,6 +102,8 @@ static void smil_has_its_values(void)
     assert_at(RECT("<animate attributeName='x' from='0' to='10' dur='1s' begin='click'/>"), .5, "x",
               "1");
     assert_at(RECT("<animate attributeName='x' from='0' to='10' dur='indefinite'/>"), 5, "x", "0");
+    assert_at("<style>rect{x:3px}</style>" RECT("<set attributeName='x' to='9'/>"), 1, "x", "9");
+    assert_at("<stop id='a'><set attributeName='offset' to='.5'/></stop>", 1, "offset", ".5");
 }
 
 static void smil_begins_and_ends_with_others(void)
@@ -176,10 +180,13 @@ static void css_has_its_values(void)
     assert_at(CSS("@keyframes k{from{transform:translateX(10px)}to{transform:matrix(1,0,0,1,20,0)}}"
                   "#a{animation:k 1s linear}"),
               .5, "transform", "matrix(1 0 0 1 15 0)");
-    assert_at(CSS("@keyframes k{from{x:0}to{x:50%}}#a{animation:k 1s linear}"), .5, "x", "25");
+    assert_at(CSS("@property --v{syntax:'&lt;number>';initial-value:1}@keyframes k{to{--v:3}}"
+                  "#a{opacity:calc(var(--v) / 4);animation:k 1s linear}"),
+              .5, "opacity", "0.5");
+    assert_at(CSS("@keyframes k{from{x:0}to{x:50%}}#a{animation:k 1s linear}"), .5, "x", "25%");
     assert_at(CSS("@keyframes k{to{opacity:0}}@keyframes m{to{x:8px}}#a{animation:k 1s linear,m 2s "
                   "linear}"),
-              1.5, "x", "6");
+              1.5, "x", "6px");
 }
 
 static FlFilmLength length_of(const char *content)

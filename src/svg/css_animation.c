@@ -248,9 +248,9 @@ static char *substituted(const char *value, const FlCssContext *context)
     return text ? g_strstrip(text) : g_strdup(value);
 }
 
-/** A value between those of the keyframes around a progress. */
+/** A value between those of the keyframes around a progress; `typed`: a variable of @property. */
 static char *between(const GArray *frames, const char *property, double p, const char *timing,
-                     const char *underlying, const FlCssContext *context)
+                     const char *underlying, bool typed, const FlCssContext *context)
 {
     const char *from = underlying, *to = underlying;
     double start = 0, end = 1;
@@ -287,7 +287,7 @@ static char *between(const GArray *frames, const char *property, double p, const
         text = between_transforms(property, from, to, q);
     else if (strcmp(property, "visibility") == 0 && q > 0 && q < 1)
         text = g_strdup(strcmp(from, "visible") == 0 ? from : to);
-    else if (*from && *to && strncmp(property, "--", 2) != 0)
+    else if (*from && *to && (typed || strncmp(property, "--", 2) != 0))
         text = fl_interpolate(from, to, q);
     return text ? text : g_strdup(q < .5 ? from : to);
 }
@@ -327,10 +327,12 @@ void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet
         g_autoptr(GPtrArray) properties = properties_of(frames);
         for (guint k = 0; k < properties->len; k++) {
             const char *property = properties->pdata[k], *base = underlying(data, property);
+            const char *typed = find(fl_css_sheet_initial(sheet), property);
+            base = *base || !typed ? base : typed;
             const bool adds = strcmp(longhand(animations, COMPOSITION, i), "add") == 0 &&
                               strcmp(property, "transform") == 0;
             char *value = between(frames, property, p, longhand(animations, TIMING, i),
-                                  adds ? "none" : base, context);
+                                  adds ? "none" : base, typed != NULL, context);
             if (adds) {
                 const bool still = strcmp(value, "none") == 0;
                 char *sum = g_strconcat(strcmp(base, "none") == 0 ? "" : base, " ",

@@ -166,6 +166,8 @@ bool fl_css_is_valid(const FlCssProperty *property, const char *value)
         return colour != NULL;
     case FL_CSS_ABSENT:
         return strcmp(value, "0") == 0; // or none
+    case FL_CSS_TRANSFORM:
+        return strcmp(property->name, "offset") != 0; // a shorthand; <stop> has it as attribute
     case FL_CSS_BLEND:
         return !g_str_has_prefix(value, "plus-");
     case FL_CSS_NUMBER:

@@ -116,6 +116,13 @@ static size_t number_length(const char *s, const char *begin)
     return n;
 }
 
+/** The length of a unit behind a number; letters of path data are none. */
+static size_t unit_length(const char *s)
+{
+    const size_t n = *s == '%' ? 1 : strspn(s, "abcdefghijklmnopqrstuvwxyz");
+    return *s == '%' || n > 1 ? n : 0;
+}
+
 /** Skips separators of numbers, which may differ: "1,2" and "1 2". */
 static const char *skip_separators(const char *s)
 {
@@ -136,11 +143,17 @@ static char *combine(const char *a, const char *b, double wa, double wb, double 
         const size_t na = number_length(pa, a), nb = number_length(pb, b);
         if (na > 0 && nb > 0) {
             const double va = g_ascii_strtod(pa, NULL), vb = g_ascii_strtod(pb, NULL);
+            const size_t ua = unit_length(pa + na), ub = unit_length(pb + nb);
             g_autofree char *text = fl_css_number_text(wa * va + wb * vb);
             g_string_append_printf(
                 out, "%s%s", out->len && g_ascii_isdigit(out->str[out->len - 1]) ? " " : "", text);
             sum += (vb - va) * (vb - va);
             pa += na, pb += nb;
+            const bool only_a = ua > 0 && ub == 0 && vb == 0, only_b = ub > 0 && ua == 0 && va == 0;
+            if (only_a || only_b) { // 0 has any unit
+                g_string_append_len(out, only_a ? pa : pb, (gssize)(only_a ? ua : ub));
+                pa += ua, pb += ub;
+            }
         } else {
             same = na == 0 && nb == 0 && *pa == *pb;
             g_string_append_c(out, *pa);
@@ -189,9 +202,23 @@ static bool is_length(const char *text)
     return fl_css_number(text, &any, 1, &value);
 }
 
+/** Returns: true for a colour that mixes in Oklab [CSS Color 4 §12.1]. */
+static bool is_modern(const char *colour)
+{
+    return strchr(colour, '(') && !g_str_has_prefix(colour, "rgb") &&
+           !g_str_has_prefix(colour, "hsl") && !g_str_has_prefix(colour, "hwb");
+}
+
 char *fl_interpolate(const char *a, const char *b, double p)
 {
     double ca[4], cb[4], distance;
+    if (is_modern(a) || is_modern(b)) {
+        g_autofree char *mix =
+            g_strdup_printf("color-mix(in oklab, %s, %s %.6g%%)", a, b, CLAMP(p, 0, 1) * 100);
+        char *colour = fl_css_colour(mix);
+        if (colour)
+            return colour;
+    }
     if (colour_parts(a, ca) && colour_parts(b, cb))
         return mix_colours(ca, cb, p);
     char *text = combine(a, b, 1 - p, p, &distance);

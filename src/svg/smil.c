@@ -150,14 +150,19 @@ static char *value_at(const FlAnimation *a, const char *base, double seconds, bo
 static void set_value(xmlNode *node, const char *name, const char *value)
 {
     const FlCssProperty *property = fl_css_property(name);
-    const bool declared = property && property->kind <= FL_CSS_TEXT;
+    const bool place =
+        property && property->kind == FL_CSS_GEOMETRY && fl_css_is_valid(property, value);
+    const bool declared = place || (property && property->kind <= FL_CSS_TEXT);
     xmlAttr *foreign = NULL;
     for (xmlAttr *a = node->properties; a; a = a->next)
         foreign = a->ns && strcmp((const char *)a->name, name) == 0 ? a : foreign;
     if (declared) {
         g_autofree char *declaration = g_strdup_printf("%s:%s !important", name, value);
         fl_declare(node, declaration);
-    } else if (foreign) {
+    }
+    if (declared && !place)
+        return;
+    if (foreign) {
         xmlSetNsProp(node, foreign->ns, foreign->name, (const xmlChar *)value);
     } else {
         xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)value);
