@@ -133,7 +133,8 @@ static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d)
     }
     if (strcmp(name, "font") == 0 && strstr(d->value, "small-caps"))
         warn(c, "font-variant", "small-caps", "cannot be drawn");
-    const Value value = {name, property, d->value, d->important};
+    const char *text = custom && !*d->value ? " " : d->value; // which is a value, unlike ""
+    const Value value = {name, property, text, d->important};
     for (guint i = 0; i < values->len; i++)
         if (g_array_index(values, Value, i).name == name) {
             g_array_remove_index(values, i); // its place in the order counts for shorthands
@@ -244,9 +245,7 @@ static void set_variables(Style *style, const GArray *values)
         if (!style->variables)
             style->variables = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free);
         g_hash_table_insert(style->variables, (gpointer)v->name,
-                            g_strdup(strcmp(v->text, "initial") == 0 ? ""
-                                     : *v->text                      ? v->text
-                                                                     : " "));
+                            g_strdup(strcmp(v->text, "initial") == 0 ? "" : v->text));
     }
     for (guint i = 0; i < values->len && style->variables; i++) {
         const Value *v = &g_array_index(values, Value, i);
