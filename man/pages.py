@@ -21,12 +21,17 @@ MANUALS = ["fluidy-tutorial.7", "fluidy-svg.1", "fluidy-svg.conf.5", "fluidy-exp
 # Dials, the style that shows each best, and values.
 DIALS = [("wash", "05", "0 1 2"), ("light", "05", "0 62 180"), ("passes", "05", "0 1 2"), ("tide", "05", "0 1 2"),
          ("pool", "05", "0 1 2"), ("blooms", "05", "0 1 2"), ("calm", "01", "0 .5 1"), ("hue", "01", "0 2 5"),
-         ("palette", "01", "drawing paint"), ("marks", "04", "off charcoal pastel"), ("marks-angle", "10", "0 -58 axis"),
+         ("palette", "01", "drawing paint"), ("marks", "04", "off charcoal pastel"), ("marks-angle", "10", "0 -58 90"),
          ("gaps", "05", "0 .5 1"), ("edges", "02", "closed soft"), ("front", "01", "0 .8 2"), ("stain", "01", "0 .8 1"),
          ("overrun", "01", "2 5 10"), ("carry", "08", "0 .5 1"), ("line", "05", "plain pen brush"),
          ("paper-relief", "05", "0 .8 1.6"), ("style-scale", "01", ".5 1 2"), ("strength", "11", ".3 .6 1")]
 DRAWING = "fixtures/animations/snowman-wave-layers"
-MOVING = ("front", "stain", "overrun", "carry")  # dials of which a single frame shows nothing
+MOVING = ("front", "stain", "overrun", "carry")  # dials of which a first frame shows nothing
+# A film for the dials: two shapes that touch, one of them moving, and a line.
+FIGURE = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 310 230"><path fill="#2f7f96"
+d="M30 150c-16-60 30-116 96-112s84 44 72 96-44 76-96 72-62-16-72-56z"/><g transform="translate({0} 0)"><path fill="#d9742b"
+d="M176 128a44 44 0 1 1 88 0a44 44 0 1 1-88 0"/><path fill="none" stroke="#222" stroke-width="3"
+d="M196 120q24 40 48 0"/></g></svg>"""
 SEARCH = """
 const box = document.querySelector("#search"), list = document.querySelector("#found");
 box.oninput = () => {
@@ -127,14 +132,16 @@ def paint_pictures(source, program, folder):
     for style in sorted((source / "fixtures/styles").glob("*/style.ini")):
         number = style.parent.name
         run(drawing, "-s", number, "-f", "1-30", "-W", "360", "--no-frames", "-o", folder / f"style-{number}.mp4")
+    for frame in range(6):
+        (folder / f"figure_{frame}.svg").write_text(FIGURE.format(6 * frame - 20), encoding="utf-8")
     for dial, style, values in DIALS:
         for n, value in enumerate(values.split()):
-            frames = "13-18" if dial in MOVING else "18"
-            run(drawing, "-s", style, "-f", frames, "-W", "480", f"--{dial}={value}", "-o", folder / "one_%d.png")
-            subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", folder / "one_18.png", "-q:v", "3", folder / f"{dial}-{n}.jpg"],
-                           check=True)
-    for frame in folder.glob("one_*.png"):
-        frame.unlink()
+            run(folder / "figure_%d.svg", "-s", style, "-f", "0-5" if dial in MOVING else "5", "-W", "310",
+                f"--{dial}={value}", "-o", folder / "one_%d.png")
+            subprocess.run(["ffmpeg", "-nostdin", "-v", "error", "-y", "-i", folder / "one_5.png", "-q:v", "3",
+                            folder / f"{dial}-{n}.jpg"], check=True)
+    for file in [*folder.glob("one_*.png"), *folder.glob("figure_*.svg")]:
+        file.unlink()
 
 
 def dead_links(folder, pages, with_pictures):
