@@ -39,7 +39,7 @@ static bool check_contradiction(const FlArgs *args, const FlOption *option, GErr
     return true;
 }
 
-/* Options with a field in FlRenderOptions. */
+/* The options of a render. */
 static gboolean read_option(const char *name, const char *value, gpointer data, GError **error)
 {
     FlArgs *args = data;

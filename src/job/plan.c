@@ -44,7 +44,9 @@ static bool open_drawing(FlPlan *plan, const FlPlan *before, GError **error)
 {
     FlShapes *shapes = &plan->shapes;
     g_auto(FlRegionSettings) general = {0};
-    if (!fl_config_region_settings(plan->config, -1, "", &plan->options, NULL, &general, error))
+    if (!fl_config_region_settings(plan->config, -1, "",
+                                   (FlGiven){plan->options.settings, plan->options.n_settings},
+                                   NULL, &general, error))
         return false;
     shapes->hold = general.hold;
     plan->reading = digest_of_reading(&plan->options, plan->config);
@@ -94,17 +96,6 @@ static bool check_options(const FlRenderOptions *options, GError **error)
     return !wrong;
 }
 
-static void list_inputs(FlPlan *plan)
-{
-    const FlShapes *shapes = &plan->shapes;
-    g_autofree const char **regions = g_new0(const char *, shapes->n_painted + 1);
-    for (int p = 0; p < shapes->n_painted; p++)
-        regions[p] = shapes->painted[p].name;
-    fl_inputs_add_options(plan->inputs, &plan->options, shapes->drawing, regions);
-    for (int k = fl_plan_earliest(plan); k < fl_drawing_earlier(shapes->drawing); k++)
-        fl_inputs_add(plan->inputs, fl_drawing_found_files(shapes->drawing)[k]);
-}
-
 /* Finds the places of the paint and the hidden regions before a merge reads any paint. */
 static bool look_at_paint(FlPlan *plan, GError **error)
 {
@@ -150,7 +141,7 @@ static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
                         fl_drawing_name(shapes->drawing), error) ||
         !fl_plan_choose_styles(plan, error))
         return false;
-    list_inputs(plan);
+    fl_plan_list_inputs(plan);
     fl_store_hold_most(plan->cache, (guint)(KEPT_CHOICES * shapes->n_painted * shapes->n_frames));
     return (!plan->options.merge || plan->finished == FL_FINISHED_FRAMES ||
             look_at_paint(plan, error));

@@ -97,9 +97,11 @@ bool fl_guard_pictures(const FlDrawing *drawing, const FlRenderOptions *options,
 
 /** The settings of a region; those that its style gives come before all others. Arguments and
  * errors as of fl_config_region_settings(). */
-bool fl_plan_region_settings(const FlConfig *config, int rule, const char *region,
-                             const FlRenderOptions *options, FlRegionSettings *settings,
-                             GError **error);
+bool fl_plan_region_settings(const FlConfig *config, int rule, const char *region, FlGiven given,
+                             FlRegionSettings *settings, GError **error);
+
+/** Lists the files that the options name, and the earlier frames. */
+void fl_plan_list_inputs(FlPlan *plan);
 
 /** Chooses the regions that are painted and their settings; the drawing is open. */
 bool fl_plan_find_regions(FlPlan *plan, GError **error);

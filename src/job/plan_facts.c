@@ -253,18 +253,18 @@ void fl_region_facts_add_flow(FlFacts *facts, const FlShapes *shapes, int p, FlI
  */
 
 /* Those that decide bytes in whatever way; not how frames become a film. */
-static void add_requested(FlFacts *facts, const FlRenderOptions *options)
+static void add_requested(FlFacts *facts, const FlPlan *plan)
 {
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *option = fl_option_at(i);
         if (option->scope != FL_SCOPE_RENDER || option->bytes == FL_BYTES_NEVER ||
             g_str_equal(option->name, "format") || g_str_equal(option->name, "fps"))
             continue;
-        g_autofree char *value = fl_option_get(option, options);
+        g_autofree char *value = fl_option_get(option, &plan->options);
         fl_facts_add(facts, option->name, value);
     }
-    for (size_t i = 0; i < options->n_settings; i++) {
-        const FlSetting *setting = &options->settings[i];
+    for (size_t i = 0; i < plan->options.n_settings; i++) {
+        const FlSetting *setting = &plan->options.settings[i];
         fl_facts_add(facts, "region", setting->region);
         fl_facts_add(facts, setting->name, setting->value);
     }
@@ -278,7 +278,7 @@ FlDigest fl_request_digest(const FlPlan *plan, const FlSequence *sequence)
     fl_facts_add_versions(facts);
     fl_facts_add(facts, "the working directory", folder);
     fl_facts_add(facts, "the format", plan->out.format->name);
-    add_requested(facts, &plan->options);
+    add_requested(facts, plan);
     for (int f = 0; f < sequence->n; f++) {
         fl_facts_add_number(facts, sequence->file[f], sequence->number[f]);
         fl_facts_add_number(facts, "whether it stands in", sequence->stand_in[f]);

@@ -9,6 +9,11 @@
 #include "style/style_folder.h"
 #include <string.h>
 
+static FlGiven given_of(const FlPlan *plan)
+{
+    return (FlGiven){plan->options.settings, plan->options.n_settings};
+}
+
 static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
 {
     g_autoptr(GPtrArray) names = g_ptr_array_new();
@@ -35,11 +40,12 @@ static bool has_region(const FlPlan *plan, const char *name)
 
 static bool check_region_names(const FlPlan *plan, GError **error)
 {
-    const FlRenderOptions *o = &plan->options;
-    g_auto(GStrv) only = g_strsplit(o->only_region ? o->only_region : "", ",", -1);
-    const size_t n = o->n_settings + g_strv_length(only);
+    const char *only_region = plan->options.only_region;
+    g_auto(GStrv) only = g_strsplit(only_region ? only_region : "", ",", -1);
+    const FlGiven given = given_of(plan);
+    const size_t n = given.n + g_strv_length(only);
     for (size_t i = 0; i < n; i++) {
-        const char *name = i < o->n_settings ? o->settings[i].region : only[i - o->n_settings];
+        const char *name = i < given.n ? given.setting[i].region : only[i - given.n];
         if (name && !has_region(plan, name))
             return no_such_region(plan, name, error);
     }
@@ -60,14 +66,13 @@ static bool check_wet_with(const FlPlan *plan, const FlRegionSettings *settings,
 }
 
 /* Paper that is left around a region would be wider where it has no rim. */
-static FlEdge edge_limit_of(const FlRenderOptions *options, const FlRegionSettings *settings,
-                            bool painted)
+static FlEdge edge_limit_of(bool gap, const FlRegionSettings *settings, bool painted)
 {
     if (!painted)
         return FL_EDGE_NONE;
     if (settings->edges == FL_EDGES_SOFT)
         return FL_EDGE_FREE;
-    const bool apart = options->gap > 0 || settings->stacking == FL_STACKING_GLAZE;
+    const bool apart = gap || settings->stacking == FL_STACKING_GLAZE;
     return apart ? FL_EDGE_SAME_COLOUR : FL_EDGE_ADJACENT;
 }
 
@@ -97,19 +102,18 @@ static bool choose_key(FlPlan *plan, FlRegionPlan *painted, int k, GError **erro
            fl_region_settings_set(&painted->settings, "style", style, NULL, error);
 }
 
-bool fl_plan_region_settings(const FlConfig *config, int rule, const char *region,
-                             const FlRenderOptions *options, FlRegionSettings *settings,
-                             GError **error)
+bool fl_plan_region_settings(const FlConfig *config, int rule, const char *region, FlGiven given,
+                             FlRegionSettings *settings, GError **error)
 {
     g_auto(FlOverrides) own = {0};
-    if (!fl_config_region_settings(config, rule, region, options, NULL, settings, error))
+    if (!fl_config_region_settings(config, rule, region, given, NULL, settings, error))
         return false;
     if (settings->style)
         fl_style_settings(settings->style, &own);
     if (own.n == 0)
         return true;
     fl_region_settings_clear(settings);
-    return fl_config_region_settings(config, rule, region, options, &own, settings, error);
+    return fl_config_region_settings(config, rule, region, given, &own, settings, error);
 }
 
 /* Splits the region that was planned last into a painted region for each of its keyed styles. */
@@ -134,7 +138,7 @@ static bool add_styles(FlPlan *plan, int region, GError **error)
             break;
         painted->more = true;
         painted++;
-        if (!fl_plan_region_settings(plan->config, r->rule, r->name, &plan->options,
+        if (!fl_plan_region_settings(plan->config, r->rule, r->name, given_of(plan),
                                      &painted->settings, error))
             return false;
         painted->region = region, painted->name = r->name;
@@ -152,11 +156,11 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
     FlRegionSettings *settings = &chosen->settings;
     const bool left_out = is_left_out(plan, r->name);
     const int rule = fl_config_rule(plan->config, r->rule, r->name);
-    if (!fl_plan_region_settings(plan->config, rule, r->name, &plan->options, settings, error))
+    if (!fl_plan_region_settings(plan->config, rule, r->name, given_of(plan), settings, error))
         return false;
     const bool painted = r->paintable && settings->passthrough != FL_PASSTHROUGH_YES;
     plan->half &= !painted || settings->params.half_size;
-    shapes->edge_limits[region] = edge_limit_of(&plan->options, settings, painted);
+    shapes->edge_limits[region] = edge_limit_of(plan->options.gap > 0, settings, painted);
     if (!painted)
         shapes->hands[region] = (FlRegionHand){settings->line, settings->line_boil};
     shapes->painted_of[region] = left_out ? FL_LEFT_OUT : FL_DRAWN_AS_IT_IS;

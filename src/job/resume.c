@@ -307,9 +307,9 @@ static bool writes_more(const FlOutputs *o)
 /* The store of the plan, if its render can be known as finished. */
 static FlStore *store_for(const FlPlan *plan)
 {
-    const FlRenderOptions *o = &plan->options;
-    const bool piped = o->config && !g_file_test(o->config, G_FILE_TEST_IS_REGULAR);
-    return writes_more(&plan->out) || o->dry_run || piped
+    const bool piped =
+        plan->options.config && !g_file_test(plan->options.config, G_FILE_TEST_IS_REGULAR);
+    return writes_more(&plan->out) || plan->options.dry_run || piped
                ? NULL
                : plan->cache; // a pipe cannot be read again
 }
@@ -372,12 +372,11 @@ static bool frames_are_there(const FlPlan *plan, const FlSequence *sequence, FlD
 /* Frames that exist and are to be kept. */
 static bool keeps_all(const FlPlan *plan, const FlSequence *sequence)
 {
-    const FlRenderOptions *o = &plan->options;
-    if (plan->out.overwrite != FL_OVERWRITE_KEEP || o->verify || film_of(plan) ||
+    if (plan->out.overwrite != FL_OVERWRITE_KEEP || plan->options.verify || film_of(plan) ||
         plan->out.parts_only || writes_more(&plan->out))
         return false;
     // frames that are found to be left out would move the bounds of parts
-    if (plan->out.n_parts > 1 && o->missing > FL_MISSING_ERROR)
+    if (plan->out.n_parts > 1 && plan->options.missing > FL_MISSING_ERROR)
         return false;
     int first, end;
     fl_outputs_part(&plan->out, sequence->n, &first, &end);

@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "io/pattern.h"
-#include "io/picture_file.h"
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -75,6 +74,12 @@ void fl_inputs_add(FlInputs *inputs, const char *path)
         inputs->tell(path, inputs->data);
 }
 
+void fl_inputs_add_quietly(FlInputs *inputs, const char *path)
+{
+    if (path)
+        (void)list(inputs, path);
+}
+
 static int by_name(const void *a, const void *b)
 {
     return strcmp(*(char *const *)a, *(char *const *)b);
@@ -128,10 +133,8 @@ void fl_inputs_add_drawing(FlInputs *inputs, const FlDrawing *drawing)
         fl_inputs_add(inputs, linked[k]);
 }
 
-/** Adds the files of an option that may name one for each frame and {region}. pattern and region
- * may be NULL. */
-static void add_frames(FlInputs *inputs, const FlDrawing *drawing, const char *pattern,
-                       const char *region)
+void fl_inputs_add_frames(FlInputs *inputs, const FlDrawing *drawing, const char *pattern,
+                          const char *region)
 {
     fl_inputs_add(inputs, pattern);
     for (int f = 0; pattern && fl_input_is_pattern(pattern) && f < fl_drawing_frames(drawing);
@@ -139,24 +142,6 @@ static void add_frames(FlInputs *inputs, const FlDrawing *drawing, const char *p
         g_autofree char *path =
             fl_output_name(pattern, fl_drawing_number(drawing, f), region, NULL);
         fl_inputs_add(inputs, path);
-    }
-}
-
-void fl_inputs_add_options(FlInputs *inputs, const FlRenderOptions *options,
-                           const FlDrawing *drawing, const char *const *regions)
-{
-    const char *background = options->background;
-    const char *const patterns[] = {background && fl_picture_named(background) ? background : NULL,
-                                    options->directions, options->flow,
-                                    options->merge ? options->paint : NULL};
-    if (options->config)
-        (void)list(inputs, options->config);
-    if (options->paper && fl_picture_named(options->paper)) // no word for a paper
-        fl_inputs_add(inputs, options->paper);
-    for (size_t k = 0; k < G_N_ELEMENTS(patterns); k++) {
-        add_frames(inputs, drawing, patterns[k], NULL);
-        for (const char *const *region = regions; region && *region; region++)
-            add_frames(inputs, drawing, patterns[k], *region);
     }
 }
 

@@ -10,7 +10,7 @@
 typedef struct FlInputs FlInputs;
 
 /** tell: gets each path that is added, but for the config, the drawings and single files of a
- * style: FlRenderOptions.reads. May be NULL. */
+ * style. May be NULL. */
 FlInputs *fl_inputs_new(void (*tell)(const char *path, void *data), void *data);
 void fl_inputs_free(FlInputs *inputs); // NULL is fine
 
@@ -23,9 +23,13 @@ void fl_inputs_add_style(FlInputs *inputs, const char *folder);
 /** Adds the files of a drawing's frames and all that they refer to. */
 void fl_inputs_add_drawing(FlInputs *inputs, const FlDrawing *drawing);
 
-/** Adds config, paper, background, flow and the paint that a merge reads. regions ends in NULL. */
-void fl_inputs_add_options(FlInputs *inputs, const FlRenderOptions *options,
-                           const FlDrawing *drawing, const char *const *regions);
+/** Adds the files of an option that may name one for each frame and {region}. pattern and region
+ * may be NULL. */
+void fl_inputs_add_frames(FlInputs *inputs, const FlDrawing *drawing, const char *pattern,
+                          const char *region);
+
+/** Adds a file without telling the caller; it may be NULL. */
+void fl_inputs_add_quietly(FlInputs *inputs, const char *path);
 
 int fl_inputs_count(const FlInputs *inputs);
 const char *fl_inputs_path(const FlInputs *inputs, int index); // borrowed

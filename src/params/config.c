@@ -344,12 +344,12 @@ void fl_config_complete(const FlConfig *config, FlRenderOptions *options)
 }
 
 /* Settings become overrides, so that a preset among them comes first. */
-static bool apply_settings(const FlRenderOptions *options, const char *region,
-                           FlRegionSettings *settings, GError **error)
+static bool apply_settings(FlGiven given, const char *region, FlRegionSettings *settings,
+                           GError **error)
 {
     g_auto(FlOverrides) overrides = {0};
-    for (size_t i = 0; i < options->n_settings; i++) {
-        const FlSetting *setting = &options->settings[i];
+    for (size_t i = 0; i < given.n; i++) {
+        const FlSetting *setting = &given.setting[i];
         if (g_strcmp0(setting->region, region) == 0 &&
             !fl_overrides_add(&overrides, setting->name, setting->value, error))
             return false;
@@ -358,9 +358,8 @@ static bool apply_settings(const FlRenderOptions *options, const char *region,
     return true;
 }
 
-bool fl_config_region_settings(const FlConfig *config, int rule, const char *region,
-                               const FlRenderOptions *options, const FlOverrides *first,
-                               FlRegionSettings *settings, GError **error)
+bool fl_config_region_settings(const FlConfig *config, int rule, const char *region, FlGiven given,
+                               const FlOverrides *first, FlRegionSettings *settings, GError **error)
 {
     g_assert(rule >= -1 && rule < config->n_rules);
     fl_region_settings_init(settings);
@@ -369,8 +368,8 @@ bool fl_config_region_settings(const FlConfig *config, int rule, const char *reg
     fl_overrides_apply(&config->defaults, settings);
     if (rule >= 0)
         fl_overrides_apply(&config->rules[rule].overrides, settings);
-    if (!apply_settings(options, NULL, settings, error) ||
-        !apply_settings(options, region, settings, error)) {
+    if (!apply_settings(given, NULL, settings, error) ||
+        !apply_settings(given, region, settings, error)) {
         fl_region_settings_clear(settings);
         return false;
     }

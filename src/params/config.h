@@ -60,17 +60,23 @@ void fl_config_free(FlConfig *config); // NULL is fine
  */
 void fl_config_complete(const FlConfig *config, FlRenderOptions *options);
 
+/** The settings of regions that a caller gives, FlRenderOptions.settings. Borrowed. */
+typedef struct FlGiven {
+    const FlSetting *setting;
+    size_t n;
+} FlGiven;
+
 /**
  * Decides how a region is painted: defaults, then `first`, then [defaults], then the rule, then the
- * options' settings for every region, then those for this one.
+ * given settings for every region, then those for this one.
  *
  * first: what a style says; NULL: nothing.
  * rule is an index into config->rules; -1 without a rule. Initialises `settings`.
- * Returns: false with FL_ERROR_USAGE about an option's setting; `settings` then needs no clearing.
+ * Returns: false with FL_ERROR_USAGE about a given setting; `settings` then needs no clearing.
  */
-bool fl_config_region_settings(const FlConfig *config, int rule, const char *region,
-                               const FlRenderOptions *options, const FlOverrides *first,
-                               FlRegionSettings *settings, GError **error);
+bool fl_config_region_settings(const FlConfig *config, int rule, const char *region, FlGiven given,
+                               const FlOverrides *first, FlRegionSettings *settings,
+                               GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlConfig, fl_config_free)
 

@@ -13,7 +13,7 @@
 #include "job/plan.h"
 #include "params/options.h"
 #include "params/text.h"
-#include "render/render_frames.h"
+#include "render/frames.h"
 #include "style/style_folder.h"
 #include <string.h>
 

@@ -106,11 +106,11 @@ static bool set_of_film(FlFilm *film, const FlOption *option, const char *value,
 /* Checks a setting alone; regions are checked once they are known. */
 static bool check_setting(const FlSetting *setting, GError **error)
 {
-    const FlRenderOptions options = {.settings = setting, .n_settings = 1};
+    const FlGiven given = {setting, 1};
     g_auto(FlRegionSettings) settings = {0};
     g_autoptr(FlConfig) none = fl_config_load(NULL, NULL, error);
     return none && fl_config_region_settings(none, -1, setting->region ? setting->region : "",
-                                             &options, NULL, &settings, error);
+                                             given, NULL, &settings, error);
 }
 
 /* The setting takes the place of an earlier one of the same name. */

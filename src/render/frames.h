@@ -78,4 +78,11 @@ bool fl_frames_load(FlFrames *frames, GPtrArray *states, const char *path, GErro
 bool fl_frames_tell(const FlFrames *frames, const char *stage, int done, double frame_s,
                     GError **error);
 
+/**
+ * As fl_render(), but every frame is given to take(), in order, and no file is written. Of an
+ * opaque frame alpha is 255.
+ */
+bool fl_render_frames(const FlRenderOptions *options, FlTakeFrame take, void *taker,
+                      GError **error);
+
 #endif

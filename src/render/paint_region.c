@@ -101,12 +101,11 @@ static bool flow_of(void *data, const FlRegionPlan *plan, int frame, float unkno
 static bool configure(GivenRegion *given, GError **error)
 {
     const FlRegionPaint *region = given->region;
-    const FlRenderOptions options = {.settings = region->settings,
-                                     .n_settings = region->n_settings};
+    const FlGiven settings = {region->settings, region->n_settings};
     FlRegionPlan *plan = &given->plan;
     g_autoptr(FlConfig) none = fl_config_load(NULL, NULL, error);
     plan->name = region->name ? region->name : "region";
-    if (!none || !fl_plan_region_settings(none, -1, plan->name, &options, &plan->settings, error))
+    if (!none || !fl_plan_region_settings(none, -1, plan->name, settings, &plan->settings, error))
         return false;
     given->configured = true;
     return plan->settings.style || refuse(error, "‘settings’ have no \"style\"");

@@ -9,11 +9,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     g_autoptr(GError) error = NULL;
     g_autoptr(FlConfig) config = fl_config_load(path, NULL, &error);
     g_assert_true((config == NULL) == (error != NULL));
-    FlRenderOptions options = {0};
     for (int r = -1; config && r < config->n_rules; r++) {
         g_auto(FlRegionSettings) settings = {0};
         g_assert_true(
-            fl_config_region_settings(config, r, "hair", &options, NULL, &settings, NULL));
+            fl_config_region_settings(config, r, "hair", (FlGiven){0}, NULL, &settings, NULL));
     }
     fuzz_file_end(fd);
     return 0;
