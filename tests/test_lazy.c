@@ -323,6 +323,22 @@ static void same_picture_on_any_thread_count(void)
     }
 }
 
+static void terms_add_up_to_the_energy(void)
+{
+    g_auto(Film) film;
+    FlFrameStats stats;
+    film_init(&film, small_style(), "lazyfluids", "1");
+    turn_by(&film, .05);
+    paint(&film, 1);
+    g_assert_true(fl_lazy_frame(film.lazy, &film.guides, film.rgb, film.alpha, &stats, NULL, NULL));
+    for (int l = 0; l < stats.n_levels; l++) {
+        const FlLevelStats *s = &stats.level[l];
+        g_assert_true(s->texture > 0 && s->bound > 0 && s->temporal > 0);
+        g_assert_cmpfloat_with_epsilon(s->texture + s->bound + s->temporal, s->energy,
+                                       .01 * s->energy);
+    }
+}
+
 static void a_state_that_was_saved_goes_on_as_it_would_have(void)
 {
     g_autoptr(GError) error = NULL;
@@ -473,6 +489,7 @@ int main(int argc, char **argv)
     g_test_add_func("/lazy/paint-turns-with-the-drawing", paint_turns_with_the_drawing);
     g_test_add_func("/lazy/a-recording-ends-as-is-asked", a_recording_ends_as_is_asked);
     g_test_add_func("/lazy/same-picture-on-any-thread-count", same_picture_on_any_thread_count);
+    g_test_add_func("/lazy/terms-add-up-to-the-energy", terms_add_up_to_the_energy);
     g_test_add_func("/lazy/a-state-that-was-saved-goes-on-as-it-would-have",
                     a_state_that_was_saved_goes_on_as_it_would_have);
     g_test_add_func("/lazy/an-empty-mask-begins-anew", an_empty_mask_begins_anew);

@@ -365,6 +365,44 @@ static bool retrieve(FlLazy *lazy, int l, uint64_t key, FlLevelStats *stats, GEr
     return true;
 }
 
+static double square(double v)
+{
+    return v * v;
+}
+
+/* Adds a pixel's terms of (9), over its patch: of the colours, the blurred alpha and the past. */
+static void add_terms(const FlFluidPicture *source, const FlFluidPicture *target, uint32_t place,
+                      FlMatch match, FlLevelStats *stats)
+{
+    const int width = target->width, x = (int)place % width, y = (int)place / width;
+    for (int k = 0; k < FL_PATCH_PIXELS; k++) {
+        const int dx = k % FL_PATCH - FL_PATCH_RADIUS, dy = k / FL_PATCH - FL_PATCH_RADIUS;
+        int sx, sy;
+        fl_unrotate(match.theta, dx, dy, &sx, &sy);
+        const int column = (match.x_16 + sx) / 16, row = (match.y_16 + sy) / 16;
+        const int16_t *s = source->pixel[row * source->pitch + column].c;
+        const int16_t *t = target->pixel[(y + dy) * target->pitch + x + dx].c;
+        const double weight = (double)t[FL_FLUID_WEIGHT] / INT16_MAX;
+        for (int c = FL_FLUID_R; c <= FL_FLUID_EDGE; c++)
+            *(c < FL_FLUID_EDGE ? &stats->texture : &stats->bound) += square(s[c] - t[c]);
+        for (int c = FL_FLUID_PAST; c <= FL_FLUID_PAST_A; c++)
+            stats->temporal += square(weight * (s[c] - t[c]));
+    }
+}
+
+static void measure_terms(const FlLazy *lazy, int l, FlLevelStats *stats)
+{
+    const Level *level = &lazy->level[l];
+    const double unit = (double)FL_FLUID_ONE * FL_FLUID_ONE * MAX(stats->pixels, 1);
+    for (int s = 0; s < 2; s++)
+        for (size_t k = 0; k < level->segments.n[s]; k++) {
+            const uint32_t place = level->segments.place[s][k];
+            add_terms(&lazy->source.level[l].picture, &level->picture, place,
+                      level->nnf.match[place], stats);
+        }
+    stats->texture /= unit, stats->bound /= unit, stats->temporal /= unit;
+}
+
 static bool run_level(FlLazy *lazy, int l, FlLevelStats *stats, GError **error)
 {
     const Level *level = &lazy->level[l];
@@ -383,6 +421,7 @@ static bool run_level(FlLazy *lazy, int l, FlLevelStats *stats, GError **error)
         if (!retrieve(lazy, l, fl_key(key, 2 + (uint64_t)round), stats, error))
             return false;
     }
+    measure_terms(lazy, l, stats);
     return true;
 }
 
