@@ -178,7 +178,6 @@ table() {
 1|nowhere: *|nowhere
 1|none: no .svg files *|none
 1|gap: is a folder; expected one folder or several files|good/a_1.svg gap
-2|-c: is given twice; expected one file|good -c words.conf -c tint.conf
 2|%q.svg: “%q.s” is no frame number; expected %d, %04d or ####*|good/%q.svg
 2|%99999d.svg: *|good/%99999d.svg
 2|a_%d_%d.svg: “%d.s” is a second frame number; expected one|good/a_%d_%d.svg

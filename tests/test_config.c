@@ -101,6 +101,42 @@ static void a_mistake_is_named_with_file_and_line(void)
     }
 }
 
+/* A show's settings, which a shot's override one by one, wherever the show's file lies. */
+static void files_override_those_that_they_include(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *below = g_build_filename(folder, "show", NULL);
+    g_autofree char *show = g_build_filename(below, "show.conf", NULL);
+    g_assert_cmpint(g_mkdir_with_parents(below, 0700), ==, 0);
+    g_assert_true(g_file_set_contents(show,
+                                      "[project]\nseed = 7\nfps = 12\n[defaults]\ntint = keep\n"
+                                      "carry = 0.5\n[region hat]\nmatch-fill = #aa0000\n"
+                                      "style = ./felt\nhold = 2\n[region coat]\nmatch = *\n",
+                                      -1, NULL));
+    g_autoptr(FlConfig) config =
+        load("[region coat]\nhold = 3\n[project]\ninclude = show/show.conf\n"
+             "fps = 25\n[region hat]\nhold = 4\n[defaults]\ncarry = 1\n");
+    g_assert_cmpint((int)config->project.seed, ==, 7);
+    g_assert_cmpfloat(config->project.fps, ==, 25);
+    g_assert_cmpint(config->n_rules, ==, 2);
+    g_assert_cmpstr(config->rules[0].name, ==, "coat");
+    g_assert_cmpstr(config->rules[1].match_fill[0], ==, "#aa0000");
+    g_auto(FlRegionSettings) hat = {0};
+    fl_config_region_settings(config, 1, "hat", (FlGiven){0}, NULL, &hat, &error);
+    g_assert_no_error(error);
+    g_assert_cmpint(hat.hold, ==, 4);
+    g_assert_cmpfloat(hat.params.carry, ==, 1);
+    g_assert_true(g_str_has_prefix(hat.style, below)); // where its own file lies
+    g_autofree char *shot = g_build_filename(folder, "shot.conf", NULL);
+    g_autofree char *both = g_strconcat(shot, ";", show, NULL);
+    g_autoptr(FlConfig) last = fl_config_load(both, NULL, &error);
+    g_assert_no_error(error);
+    g_assert_cmpfloat(last->project.fps, ==, 12);
+    g_autofree char *itself = write_config("[project]\ninclude = shot.conf");
+    g_assert_null(fl_config_load(itself, NULL, &error));
+    g_assert_nonnull(strstr(error->message, "include each other"));
+}
+
 static void a_file_that_cannot_be_read_is_named(void)
 {
     g_autoptr(GError) error = NULL;
@@ -126,7 +162,7 @@ static void the_example_of_the_manual_is_read(void)
     g_assert_cmpint(config->n_rules, ==, 2);
     const FlRule *hair = &config->rules[0];
     g_assert_cmpstr(hair->name, ==, "hair");
-    g_assert_cmpint(hair->line, ==, 6);
+    g_assert_true(g_str_has_suffix(hair->place, "shot.conf:6"));
     g_assert_cmpstr(hair->match_layer[0], ==, "Character");
     g_assert_cmpuint(g_strv_length(hair->match_fill), ==, 2);
     g_assert_cmpstr(hair->match_fill[1], ==, "#2e1f12");
@@ -256,6 +292,7 @@ int main(int argc, char **argv)
     folder = g_dir_make_tmp("fluidy-config-XXXXXX", NULL);
 #define CASE(test) g_test_add_func("/config/" #test, test)
     CASE(a_mistake_is_named_with_file_and_line);
+    CASE(files_override_those_that_they_include);
     CASE(a_file_that_cannot_be_read_is_named);
     CASE(the_example_of_the_manual_is_read);
     CASE(keyed_numbers_are_linear_between_keys);

@@ -145,7 +145,8 @@ typedef struct FlRenderOptions {
     FlSandboxing sandbox; /**< confines the processes that read drawings */
 
     /* Painting. */
-    const char *config;      /**< a file as in fluidy-svg.conf(5); NULL: no config */
+    const char *config;      /**< a file as in fluidy-svg.conf(5), or several, separated by
+ semicolons: later ones override earlier ones; NULL: no config */
     const char *config_text; /**< text in place of that file's, which need not exist; its paths are
                                 relative to the file's folder; NULL: the file's */
     const FlSetting *settings; /**< override the config's; of several, the last wins */
@@ -231,7 +232,7 @@ typedef struct FlRenderOptions {
     void (*warning)(const char *message, void *data);
     /** Called with one line about what was done, such as where the frames are. */
     void (*note)(const char *message, void *data);
-    /** Called with the path of each file and folder that the render reads, but for the config and
+    /** Called with the path of each file and folder that the render reads, but for
      *  the drawings' own files: what they refer to, folders of styles, papers, flow. */
     void (*reads)(const char *path, void *data);
     bool verbose; /**< also notes about decisions, such as the style of a region */

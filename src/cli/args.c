@@ -44,10 +44,9 @@ static gboolean read_option(const char *name, const char *value, gpointer data, 
 {
     FlArgs *args = data;
     const FlOption *option = option_named(name);
-    if (strcmp(option->name, "config") == 0 && args->render.config) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: is given twice; expected one file", name);
-        return FALSE;
-    }
+    g_autofree char *configs = NULL;
+    if (strcmp(option->name, "config") == 0 && args->render.config)
+        value = configs = g_strconcat(args->render.config, ";", value, NULL);
     if (option->type == FL_OPTION_FLAG)
         value = "on";
     if (option->type == FL_OPTION_SWITCH) {

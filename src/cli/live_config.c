@@ -144,6 +144,11 @@ static bool read_base(FlLiveConfig *config, GError **error)
 {
     const char *path = config->args->render.config;
     g_autofree char *text = NULL;
+    if (path && strchr(path, ';') && !g_file_test(path, G_FILE_TEST_EXISTS)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "--serve: expected one config, which may include others");
+        return false;
+    }
     if (path && !g_file_get_contents(path, &text, NULL, error))
         return false;
     if (!path)

@@ -84,9 +84,8 @@ static void warn_of_unused(const FlDrawing *drawing, const FlConfig *config,
         g_autofree char *hint = rule->by_name
                                     ? fl_did_you_mean(rule->name, (const char *const *)names->pdata)
                                     : g_strdup("");
-        g_autofree char *place = g_strdup_printf("%s:%d", config->path, rule->line);
-        fl_warnings_add(warnings, place, -1, NULL, "[region %s] matches no region%s", rule->name,
-                        hint);
+        fl_warnings_add(warnings, rule->place, -1, NULL, "[region %s] matches no region%s",
+                        rule->name, hint);
     }
     if (unused > listed && listed > 0)
         fl_warnings_add(warnings, config->path, -1, NULL, "%d more sections match no region",

@@ -8,21 +8,29 @@
 
 #include <string.h>
 
+#define MOST_DEEP 8 // files that include each other
+
 /* The current section; NOWHERE is above the first one, where keys are errors. */
 typedef enum Place { NOWHERE, PROJECT, DEFAULTS, REGION } Place;
 
+/* A file. What the config has already is of files that override this one. */
 typedef struct Reader {
     FlConfig *config;
+    const char *path;
     char *folder;
     Place place;
     bool present[REGION + 1];
+    int rule;             // of this section
+    bool is_matched;      // by a file that overrides this one
     GHashTable *keys;     // of this section
     GHashTable *sections; // name of a region -> line of its section
+    char **includes;
 } Reader;
 
 static void reader_clear(Reader *reader)
 {
     g_free(reader->folder);
+    g_strfreev(reader->includes);
     g_hash_table_unref(reader->keys);
     g_hash_table_unref(reader->sections);
 }
@@ -46,6 +54,15 @@ static char ***match_list(FlRule *rule, int i)
     return (char ***)((char *)rule + match_keys[i].offset);
 }
 
+/* A section without any match key is for the region that already has its name. */
+static bool is_by_name(FlRule *rule)
+{
+    bool matches = rule->match_all;
+    for (size_t i = 0; i < G_N_ELEMENTS(match_keys); i++)
+        matches |= *match_list(rule, (int)i) != NULL;
+    return !matches;
+}
+
 /* ---- sections ---------------------------------------------------------------------------- */
 
 static bool start_region(Reader *reader, const char *name, int line, GError **error)
@@ -58,10 +75,16 @@ static bool start_region(Reader *reader, const char *name, int line, GError **er
         return fl_fail(error, FL_ERROR_USAGE, "[region %s] occurs twice, first in line %d", name,
                        before);
     g_hash_table_insert(reader->sections, g_strdup(name), GINT_TO_POINTER(line));
-    config->rules = g_renew(FlRule, config->rules, config->n_rules + 1);
-    config->rules[config->n_rules++] = (FlRule){
-        .name = g_strdup(name), .line = line, .overrides.folder = g_strdup(reader->folder)};
     reader->place = REGION;
+    reader->rule = 0;
+    while (reader->rule < config->n_rules && strcmp(config->rules[reader->rule].name, name) != 0)
+        reader->rule++;
+    if (reader->rule == config->n_rules) {
+        config->rules = g_renew(FlRule, config->rules, config->n_rules + 1);
+        config->rules[config->n_rules++] =
+            (FlRule){.name = g_strdup(name), .place = g_strdup_printf("%s:%d", reader->path, line)};
+    }
+    reader->is_matched = !is_by_name(&config->rules[reader->rule]);
     return true;
 }
 
@@ -102,15 +125,23 @@ static bool set_project(Reader *reader, const char *key, const char *value, GErr
     FlConfig *config = reader->config;
     if (strcmp(key, "version") == 0)
         return set_version(reader, value, error);
+    if (strcmp(key, "include") == 0) {
+        reader->includes = fl_key_file_list(value);
+        return true;
+    }
     const FlOption *option = fl_option_find(FL_SCOPE_RENDER, key);
     if (option && option->section == FL_SECTION_PROJECT) {
-        if (fl_option_set(option, value, reader->folder, &config->project, config->strings, error))
+        FlRenderOptions checked = {0};
+        const bool overridden = fl_option_is_set(option, &config->project);
+        if (fl_option_set(option, value, reader->folder, overridden ? &checked : &config->project,
+                          config->strings, error))
             return true;
         g_prefix_error(error, "%s: ", key);
         return false;
     }
     g_autoptr(GPtrArray) known = g_ptr_array_new();
     g_ptr_array_add(known, (gpointer) "version");
+    g_ptr_array_add(known, (gpointer) "include");
     for (int i = 0; i < fl_option_count(); i++)
         if (fl_option_at(i)->section == FL_SECTION_PROJECT)
             g_ptr_array_add(known, (gpointer)fl_option_at(i)->name);
@@ -131,7 +162,7 @@ static bool check_paints(const char *key, char **items, GError **error)
     return true;
 }
 
-static bool set_match(FlRule *rule, int i, const char *value, GError **error)
+static bool set_match(FlRule *rule, int i, const char *value, bool overridden, GError **error)
 {
     const char *key = match_keys[i].key;
     g_auto(GStrv) items = fl_key_file_list(value);
@@ -140,17 +171,19 @@ static bool set_match(FlRule *rule, int i, const char *value, GError **error)
     const bool paints = strcmp(key, "match-fill") == 0 || strcmp(key, "match-stroke") == 0;
     if (paints && !check_paints(key, items, error))
         return false;
-    *match_list(rule, i) = g_steal_pointer(&items);
+    if (!overridden)
+        *match_list(rule, i) = g_steal_pointer(&items);
     return true;
 }
 
-static bool set_tolerance(FlRule *rule, const char *value, GError **error)
+static bool set_tolerance(FlRule *rule, const char *value, bool overridden, GError **error)
 {
     double tolerance = 0;
     if (!fl_text_number(value, &tolerance) || tolerance < 0.01 || tolerance > 100)
         return fl_fail(error, FL_ERROR_USAGE,
                        "match-tolerance: “%s” is not a number from 0.01 to 100", value);
-    rule->match_tolerance = (float)tolerance;
+    if (!overridden)
+        rule->match_tolerance = (float)tolerance;
     return true;
 }
 
@@ -175,16 +208,28 @@ static bool is_region_key(const char *key)
     return g_strv_contains(fl_region_settings_keys(), key);
 }
 
-static bool set_region(FlRule *rule, const char *key, const char *value, GError **error)
+/* Keeps the value of a file that overrides this one. */
+static bool add_override(const Reader *reader, FlOverrides *overrides, const char *key,
+                         const char *value, GError **error)
 {
+    g_auto(FlOverrides) checked = {0};
+    bool overridden = false;
+    for (int k = 0; k < overrides->n; k++)
+        overridden = overridden || strcmp(overrides->override[k].key, key) == 0;
+    return fl_overrides_add(overridden ? &checked : overrides, key, value, reader->folder, error);
+}
+
+static bool set_region(const Reader *reader, const char *key, const char *value, GError **error)
+{
+    FlRule *rule = &reader->config->rules[reader->rule];
     for (size_t i = 0; i < G_N_ELEMENTS(match_keys); i++)
         if (strcmp(match_keys[i].key, key) == 0)
-            return set_match(rule, (int)i, value, error);
+            return set_match(rule, (int)i, value, reader->is_matched, error);
     if (strcmp(key, "match-tolerance") == 0)
-        return set_tolerance(rule, value, error);
+        return set_tolerance(rule, value, reader->is_matched, error);
     if (strcmp(key, "match") == 0) {
-        rule->match_all = strcmp(value, "*") == 0;
-        return rule->match_all ||
+        rule->match_all |= !reader->is_matched && strcmp(value, "*") == 0;
+        return strcmp(value, "*") == 0 ||
                fl_fail(error, FL_ERROR_USAGE,
                        "match: “%s” is not *; to match some of the leaves use match-fill, "
                        "match-label and others",
@@ -192,20 +237,19 @@ static bool set_region(FlRule *rule, const char *key, const char *value, GError 
     }
     if (!is_region_key(key))
         return unknown_key("region", key, true, error);
-    return fl_overrides_add(&rule->overrides, key, value, error);
+    return add_override(reader, &rule->overrides, key, value, error);
 }
 
-static bool set_default(FlConfig *config, const char *key, const char *value, GError **error)
+static bool set_default(const Reader *reader, const char *key, const char *value, GError **error)
 {
     if (!is_region_key(key))
         return unknown_key("defaults", key, false, error);
-    return fl_overrides_add(&config->defaults, key, value, error);
+    return add_override(reader, &reader->config->defaults, key, value, error);
 }
 
 static bool read_entry(void *data, const char *key, const char *value, int line, GError **error)
 {
     Reader *reader = data;
-    FlConfig *config = reader->config;
     if (reader->place == NOWHERE)
         return fl_fail(error, FL_ERROR_USAGE,
                        "“%s” is above the first section; put it below [project], [defaults] "
@@ -218,39 +262,65 @@ static bool read_entry(void *data, const char *key, const char *value, int line,
     if (reader->place == PROJECT)
         return set_project(reader, key, value, error);
     if (reader->place == DEFAULTS)
-        return set_default(config, key, value, error);
-    return set_region(&config->rules[config->n_rules - 1], key, value, error);
+        return set_default(reader, key, value, error);
+    return set_region(reader, key, value, error);
 }
 
 /* ---- the whole --------------------------------------------------------------------------- */
 
-/* A section without any match key is for the region that already has its name. */
-static bool is_by_name(FlRule *rule)
+static bool read_files(FlConfig *config, const FlRenderOptions *caller, char **paths,
+                       const char *folder, int depth, GError **error);
+
+/* text: of the file, which is then not read; NULL: it is read. */
+static bool read_file(FlConfig *config, const FlRenderOptions *caller, const char *path,
+                      const char *text, int depth, GError **error)
 {
-    bool matches = rule->match_all;
-    for (size_t i = 0; i < G_N_ELEMENTS(match_keys); i++)
-        matches |= *match_list(rule, (int)i) != NULL;
-    return !matches;
+    g_auto(Reader) reader = {
+        .config = config,
+        .path = path,
+        .folder = g_path_get_dirname(path),
+        .keys = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL),
+        .sections = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL),
+    };
+    const FlFileWait wait = {caller ? caller->stopped : NULL, caller ? caller->data : NULL};
+    const FlKeyReader calls = {read_section, read_entry, &reader, FL_ERROR_USAGE, &wait, text};
+    if (depth > MOST_DEEP)
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "%s: more than %d files include each other; it may include itself", path,
+                       MOST_DEEP);
+    g_ptr_array_add(config->files, g_strdup(path));
+    if (caller && caller->reads)
+        caller->reads(path, caller->data);
+    return fl_key_file_read(path, &calls, error) &&
+           read_files(config, caller, reader.includes, reader.folder, depth + 1, error);
+}
+
+/* From the last one on: it overrides the others. */
+static bool read_files(FlConfig *config, const FlRenderOptions *caller, char **paths,
+                       const char *folder, int depth, GError **error)
+{
+    bool good = true;
+    for (guint k = paths ? g_strv_length(paths) : 0; k-- > 0 && good;) {
+        g_autofree char *path = !folder || g_path_is_absolute(paths[k])
+                                    ? g_strdup(paths[k])
+                                    : g_build_filename(folder, paths[k], NULL);
+        good = read_file(config, caller, path, NULL, depth, error);
+    }
+    return good;
 }
 
 FlConfig *fl_config_load(const char *path, const FlRenderOptions *caller, GError **error)
 {
     g_autoptr(FlConfig) config = g_new0(FlConfig, 1);
+    const char *text = caller ? caller->config_text : NULL;
     config->strings = g_ptr_array_new_with_free_func(g_free);
-    if (!path)
-        return g_steal_pointer(&config);
-    g_auto(Reader) reader = {
-        .config = config,
-        .folder = g_path_get_dirname(path),
-        .keys = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL),
-        .sections = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL),
-    };
+    config->files = g_ptr_array_new_with_free_func(g_free);
     config->path = g_strdup(path);
-    config->defaults.folder = g_strdup(reader.folder);
-    const FlFileWait wait = {caller ? caller->stopped : NULL, caller ? caller->data : NULL};
-    const FlKeyReader calls = {read_section,   read_entry, &reader,
-                               FL_ERROR_USAGE, &wait,      caller ? caller->config_text : NULL};
-    if (!fl_key_file_read(path, &calls, error))
+    const bool several =
+        path && !text && strchr(path, ';') && !g_file_test(path, G_FILE_TEST_EXISTS);
+    g_auto(GStrv) paths = several ? fl_key_file_list(path) : NULL;
+    if (several ? !read_files(config, caller, paths, NULL, 0, error)
+                : path && !read_file(config, caller, path, text, 0, error))
         return NULL;
     for (int i = 0; i < config->n_rules; i++)
         config->rules[i].by_name = is_by_name(&config->rules[i]);
@@ -303,6 +373,7 @@ void fl_config_add_rules(const FlConfig *config, FlDigest *digest)
 static void rule_clear(FlRule *rule)
 {
     g_free(rule->name);
+    g_free(rule->place);
     for (size_t i = 0; i < G_N_ELEMENTS(match_keys); i++)
         g_strfreev(*match_list(rule, (int)i));
     fl_overrides_clear(&rule->overrides);
@@ -316,6 +387,7 @@ void fl_config_free(FlConfig *config)
         rule_clear(&config->rules[i]);
     g_free(config->rules);
     fl_overrides_clear(&config->defaults);
+    g_ptr_array_unref(config->files);
     g_ptr_array_unref(config->strings);
     g_free(config->path);
     g_free(config);
@@ -351,7 +423,7 @@ static bool apply_settings(FlGiven given, const char *region, FlRegionSettings *
     for (size_t i = 0; i < given.n; i++) {
         const FlSetting *setting = &given.setting[i];
         if (g_strcmp0(setting->region, region) == 0 &&
-            !fl_overrides_add(&overrides, setting->name, setting->value, error))
+            !fl_overrides_add(&overrides, setting->name, setting->value, NULL, error))
             return false;
     }
     fl_overrides_apply(&overrides, settings);

@@ -15,8 +15,8 @@
  * a CSS colour, "any", "none", "gradient" or "image".
  */
 typedef struct FlRule {
-    char *name;     // of the section; unique in the file
-    int line;       // of the section, from 1
+    char *name;     // of the section; unique
+    char *place;    // FILE:LINE of the section
     bool by_name;   // no match key
     bool match_all; // match = *
     char **match_fill, **match_stroke;
@@ -26,19 +26,22 @@ typedef struct FlRule {
     FlOverrides overrides;
 } FlRule;
 
-/** A config in memory. Rules are in the order of the file: the first that matches wins. */
+/** A config in memory. Rules are in the order of the file, those of included files after its own:
+ * the first that matches wins. */
 typedef struct FlConfig {
     char *path;              // for messages; NULL: no file
     FlRenderOptions project; // of [project]; its strings are in `strings`
     FlOverrides defaults;    // of [defaults]
     int n_rules;
     FlRule *rules;
+    GPtrArray *files; // char *: those that were read
     GPtrArray *strings;
 } FlConfig;
 
 /**
- * Reads a file or a pipe, such as the shell's <(…); path NULL gives an empty config. `caller`, who
- * may be NULL, can stop the wait for a pipe.
+ * Reads a file or a pipe, such as the shell's <(…), or several, separated by semicolons, of which
+ * later ones override earlier ones, and those that they include; path NULL gives an empty config.
+ * `caller`, who may be NULL, is told of the files, and can stop the wait for a pipe.
  *
  * Returns: to be freed with fl_config_free(); NULL with FL_ERROR_USAGE (or an error of
  * fl_file_read_pipe()), which names file, line, the mistake and what was expected.

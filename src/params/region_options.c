@@ -299,14 +299,16 @@ void fl_region_settings_clear(FlRegionSettings *settings)
     g_clear_pointer(&settings->keyed, g_ptr_array_unref);
 }
 
-bool fl_overrides_add(FlOverrides *overrides, const char *key, const char *value, GError **error)
+bool fl_overrides_add(FlOverrides *overrides, const char *key, const char *value,
+                      const char *folder, GError **error)
 {
     g_auto(FlRegionSettings) trial;
     fl_region_settings_init(&trial);
-    if (!fl_region_settings_set(&trial, key, value, overrides->folder, error))
+    if (!fl_region_settings_set(&trial, key, value, folder, error))
         return false;
     overrides->override = g_renew(FlOverride, overrides->override, overrides->n + 1);
-    overrides->override[overrides->n++] = (FlOverride){g_strdup(key), g_strdup(value)};
+    overrides->override[overrides->n++] =
+        (FlOverride){g_strdup(key), g_strdup(value), g_strdup(folder)};
     return true;
 }
 
@@ -315,9 +317,9 @@ void fl_overrides_clear(FlOverrides *overrides)
     for (int i = 0; i < overrides->n; i++) {
         g_free(overrides->override[i].key);
         g_free(overrides->override[i].value);
+        g_free(overrides->override[i].folder);
     }
     g_free(overrides->override);
-    g_free(overrides->folder);
     *overrides = (FlOverrides){0};
 }
 
@@ -339,5 +341,6 @@ void fl_overrides_apply(const FlOverrides *overrides, FlRegionSettings *settings
         for (int i = 0; i < overrides->n; i++)
             if (turn_of(overrides->override[i].key) == turn)
                 fl_region_settings_set(settings, overrides->override[i].key,
-                                       overrides->override[i].value, overrides->folder, NULL);
+                                       overrides->override[i].value, overrides->override[i].folder,
+                                       NULL);
 }

@@ -151,16 +151,17 @@ const char *const *fl_region_settings_keys(void);
 /** Overrides of a region: keys and values in the order of the file, already checked. */
 typedef struct FlOverride {
     char *key, *value;
+    char *folder; // relative paths start here; NULL: the working directory
 } FlOverride;
 
 typedef struct FlOverrides {
     int n;
     FlOverride *override;
-    char *folder; // relative paths start here; NULL: the working directory
 } FlOverrides;
 
 /** Adds a copy; the last value of a key wins. Errors as fl_region_settings_set(). */
-bool fl_overrides_add(FlOverrides *overrides, const char *key, const char *value, GError **error);
+bool fl_overrides_add(FlOverrides *overrides, const char *key, const char *value,
+                      const char *folder, GError **error);
 
 void fl_overrides_clear(FlOverrides *overrides);
 
