@@ -13,6 +13,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #if HAVE_EXR
+#include "io/cryptomatte.h"
 #include <OpenEXR/openexr.h>
 #endif
 #if HAVE_ORA
@@ -322,7 +323,7 @@ static bool write_noise(const char *path, const FlSinkFormat *format, GError **e
                                  .height = SIDE,
                                  .fps = 25,
                                  .opaque = true};
-    const FlSinkLayer layer = {"all", 0, 0, SIDE, SIDE, rgba};
+    const FlSinkLayer layer = {"all", "all", 0, 0, SIDE, SIDE, rgba};
     g_autoptr(FlSink) sink = fl_sink_open(format, &params, error);
     for (int k = 0; sink && k < 8; k++) {
         const FlSinkFrame frame = {
@@ -419,8 +420,8 @@ static char *write_layered(const Scratch *scratch, const char *name)
     g_autoptr(GRand) random = g_rand_new_with_seed(1); // rows that do not compress
     for (int i = 0; i < 16 * 4 * W; i++)
         whole[i] = (uint8_t)g_rand_int(random);
-    const FlSinkLayer layers[2] = {{"back-ground", 0, 0, W, H, whole},
-                                   {"hair", 5, 20, 4, 4, small}};
+    const FlSinkLayer layers[2] = {{"back-ground", "sky", 0, 0, W, H, whole},
+                                   {"hair", "hair", 5, 20, 4, 4, small}};
     const FlSinkFrame frame = {.number = 7, .rgba = whole, .layers = layers, .n_layers = 2};
     fl_sink_frame(sink, &frame, &error);
     g_assert_no_error(error);
@@ -439,8 +440,9 @@ static float float_of(uint16_t half)
                     : ldexpf((float)fraction, -24);
 }
 
-static uint16_t planes[12][H][W]; // of the channels of a file
-static char names[12][32];
+static uint16_t planes[24][H][W]; // of the channels of a file
+static float mattes[24][H][W];
+static char names[24][32];
 
 /** Reads the rows from y on of all channels. */
 static void read_chunk(exr_context_t context, int y)
@@ -449,14 +451,15 @@ static void read_chunk(exr_context_t context, int y)
     exr_decode_pipeline_t pipe = {0};
     g_assert_cmpint(exr_read_scanline_chunk_info(context, 0, y, &info), ==, EXR_ERR_SUCCESS);
     g_assert_cmpint(exr_decoding_initialize(context, 0, &info, &pipe), ==, EXR_ERR_SUCCESS);
-    g_assert_cmpint(pipe.channel_count, ==, 12);
-    for (int c = 0; c < 12; c++) {
+    g_assert_cmpint(pipe.channel_count, ==, 24);
+    for (int c = 0; c < 24; c++) {
         g_strlcpy(names[c], pipe.channels[c].channel_name, sizeof names[c]);
-        pipe.channels[c].decode_to_ptr = (uint8_t *)planes[c][y];
-        pipe.channels[c].user_bytes_per_element = 2;
-        pipe.channels[c].user_data_type = EXR_PIXEL_HALF;
-        pipe.channels[c].user_pixel_stride = 2;
-        pipe.channels[c].user_line_stride = 2 * W;
+        const bool matte = g_str_has_prefix(names[c], FL_MATTES);
+        pipe.channels[c].decode_to_ptr = matte ? (uint8_t *)mattes[c][y] : (uint8_t *)planes[c][y];
+        pipe.channels[c].user_bytes_per_element = matte ? 4 : 2;
+        pipe.channels[c].user_data_type = matte ? EXR_PIXEL_FLOAT : EXR_PIXEL_HALF;
+        pipe.channels[c].user_pixel_stride = matte ? 4 : 2;
+        pipe.channels[c].user_line_stride = (matte ? 4 : 2) * W;
     }
     g_assert_cmpint(exr_decoding_choose_default_routines(context, 0, &pipe), ==, EXR_ERR_SUCCESS);
     g_assert_cmpint(exr_decoding_run(context, 0, &pipe), ==, EXR_ERR_SUCCESS);
@@ -483,6 +486,40 @@ static void expect_layer(const char *name, int component, const uint8_t *rgba, F
         }
 }
 
+static float matte_at(const char *name, int x, int y)
+{
+    int c = 0;
+    while (strcmp(names[c], name) != 0)
+        c++;
+    return mattes[c][y][x];
+}
+
+/** The share of a region in a pixel, as Cryptomatte has it in two of six ranks. */
+static float share_of(const char *region, int x, int y)
+{
+    const union {
+        guint32 u;
+        float f;
+    } id = {fl_matte_id(region)};
+    return (matte_at(FL_MATTES "00.R", x, y) == id.f ? matte_at(FL_MATTES "00.G", x, y) : 0) +
+           (matte_at(FL_MATTES "00.B", x, y) == id.f ? matte_at(FL_MATTES "00.A", x, y) : 0);
+}
+
+static void expect_mattes(void)
+{
+    g_assert_cmphex(fl_matte_id("hello"), ==, 0x248bfa47); // of the reference implementation
+    g_assert_cmphex(fl_matte_id("hello, world"), ==, 0x149bbb7f);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const bool inside = x >= 5 && x < 9 && y >= 20 && y < 24;
+            const float hair = inside ? 0.2f : 0, back = (float)whole[4 * (y * W + x) + 3] / 255;
+            g_assert_cmpfloat_with_epsilon(share_of("hair", x, y), hair, 1e-6);
+            g_assert_cmpfloat_with_epsilon(share_of("sky", x, y), back * (1 - hair), 1e-6);
+            g_assert_cmpfloat(matte_at(FL_MATTES "00.G", x, y), >=,
+                              matte_at(FL_MATTES "00.A", x, y));
+        }
+}
+
 static void an_exr_holds_linear_premultiplied_layers(void)
 {
     g_auto(Scratch) scratch = scratch_new();
@@ -505,6 +542,7 @@ static void an_exr_holds_linear_premultiplied_layers(void)
     expect_layer("hair.G", 1, small, (FlRect){5, 20, 4, 4});
     expect_layer("hair.A", 3, small, (FlRect){5, 20, 4, 4});
     expect_layer("back-ground.B", 2, whole, (FlRect){0, 0, W, H});
+    expect_mattes();
 }
 
 #endif

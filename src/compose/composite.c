@@ -254,6 +254,12 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
             draw[composite->n_layers++] = r;
         }
     insert_stain(composite, input, draw);
+    composite->regions = g_new0(const char *, draws->n + 2);
+    for (int k = 0; k < composite->n_layers; k++)
+        composite->regions[k] =
+            draw[k] == NO_DRAW
+                ? composite->names[k]
+                : fl_drawing_region(input->drawing, draws->draw[draw[k]].region)->name;
     g_auto(FlWashes) washes = {0};
     Stack stack = {composite, {input, cover, exposures, &washes}, draw};
     if (!fl_washes_find(&washes, input, draws, error) ||
@@ -336,6 +342,7 @@ static void drop_layers(FlComposite *composite)
     }
     g_clear_pointer(&composite->layers, g_free);
     g_clear_pointer(&composite->names, g_free);
+    g_clear_pointer(&composite->regions, g_free);
     composite->n_layers = 0;
 }
 

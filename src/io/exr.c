@@ -1,14 +1,17 @@
-/* Layered OpenEXR files, half float. */
+/* Layered OpenEXR files, half float, with mattes of the layers. */
 #include "base/alloc.h"
 #include "base/density.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/json.h"
 #include "base/schedule.h"
+#include "io/cryptomatte.h"
 #include "io/formats.h"
 #include "io/provenance.h"
 
 #include <OpenEXR/openexr.h>
 #include <libdeflate.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Level 4 makes files 2 % smaller and a frame of layers 6 % slower to write. */
@@ -24,9 +27,12 @@ typedef struct Writer {
     const char *mark;    // or NULL
     int width, height;
     int chunk_rows;
-    const Layer **layer; // of each channel, in the file's order
-    int *component;      // of each channel: 0..3, R G B A
+    const FlSinkFrame *frame;
+    guint32 *id;         // of each layer's region, in mattes; 0: none
+    const Layer **layer; // of each channel, in the file's order; NULL: it is one of the mattes
+    int *component;      // of each channel: 0..3, R G B A; of mattes from 0
     int n_channels;
+    int row_units; // of 16 bits, in a pixel of all channels
 } Writer;
 
 static const char components[] = "RGBA";
@@ -96,6 +102,39 @@ static bool add_layer_channels(Writer *writer, const Layer *layer)
     return true;
 }
 
+static bool has_mattes(const Writer *writer)
+{
+    return writer->frame->n_layers > 0;
+}
+
+static bool set_text(Writer *writer, const char *attribute, const char *value)
+{
+    g_autofree char *key = fl_mattes_key(attribute);
+    return went(writer, exr_attr_set_string(writer->context, 0, key, value));
+}
+
+/** The channels of mattes, and the names of their ids. */
+static bool add_mattes(Writer *writer)
+{
+    const FlSinkFrame *frame = writer->frame;
+    g_autoptr(GString) manifest = g_string_new("{");
+    for (int k = 0; k < FL_MATTES_CHANNELS; k++) {
+        g_autofree char *name = g_strdup_printf(FL_MATTES "%02d.%c", k / 4, components[k % 4]);
+        if (!went(writer, exr_add_channel(writer->context, 0, name, EXR_PIXEL_FLOAT,
+                                          EXR_PERCEPTUALLY_LINEAR, 1, 1)))
+            return false;
+    }
+    for (int k = 0; k < frame->n_layers; k++) {
+        g_autofree char *id = g_strdup_printf("%08x", writer->id[k]);
+        if (writer->id[k] && !strstr(manifest->str, id))
+            fl_json_text(manifest, frame->layers[k].region, id);
+    }
+    g_string_append_c(manifest, '}');
+    return set_text(writer, "name", FL_MATTES) && set_text(writer, "hash", "MurmurHash3_32") &&
+           set_text(writer, "conversion", "uint32_to_float32") &&
+           set_text(writer, "manifest", manifest->str);
+}
+
 /** Rec. 709, whose primaries and white are sRGB's. */
 static const exr_attr_chromaticities_t rec_709 = {.64f, .33f, .30f,   .60f,
                                                   .15f, .06f, .3127f, .3290f};
@@ -115,7 +154,8 @@ static bool put_header(Writer *writer, const Layer *whole, const FlSinkFrame *fr
     for (int k = 0; k < frame->n_layers; k++)
         if (!add_layer_channels(writer, &frame->layers[k]))
             return false;
-    return went(writer, exr_write_header(writer->context)) &&
+    return (!has_mattes(writer) || add_mattes(writer)) &&
+           went(writer, exr_write_header(writer->context)) &&
            went(writer, exr_get_scanlines_per_chunk(writer->context, 0, &writer->chunk_rows));
 }
 
@@ -127,6 +167,10 @@ static void map_channel(Writer *writer, int channel, const char *name, const Lay
     const size_t length = dot ? (size_t)(dot - name) : 0;
     writer->component[channel] = (int)(strchr(components, dot ? dot[1] : name[0]) - components);
     writer->layer[channel] = whole;
+    if (has_mattes(writer) && g_str_has_prefix(name, FL_MATTES)) {
+        writer->layer[channel] = NULL;
+        writer->component[channel] += 4 * atoi(name + strlen(FL_MATTES));
+    }
     for (int k = 0; k < frame->n_layers && dot; k++)
         if (strlen(frame->layers[k].name) == length &&
             strncmp(frame->layers[k].name, name, length) == 0)
@@ -141,8 +185,10 @@ static bool list_channels(Writer *writer, const Layer *whole, const FlSinkFrame 
     writer->n_channels = list->num_channels;
     writer->layer = g_new(const Layer *, writer->n_channels);
     writer->component = g_new(int, writer->n_channels);
-    for (int c = 0; c < writer->n_channels; c++)
+    for (int c = 0; c < writer->n_channels; c++) {
         map_channel(writer, c, list->entries[c].name.str, whole, frame);
+        writer->row_units += writer->layer[c] ? 1 : 2;
+    }
     return true;
 }
 
@@ -152,6 +198,7 @@ typedef struct Chunk {
     uint8_t *bytes;   // room for the halves
     uint8_t *packed;  // likewise
     uint8_t *rgba;    // one row of a layer, as wide as the frame
+    FlMatteRow mattes;
     struct libdeflate_compressor *compressor;
 } Chunk;
 
@@ -161,6 +208,7 @@ static void chunk_clear(Chunk *chunk)
     g_free(chunk->bytes);
     g_free(chunk->packed);
     g_free(chunk->rgba);
+    g_free(chunk->mattes.value);
     if (chunk->compressor)
         libdeflate_free_compressor(chunk->compressor);
 }
@@ -169,7 +217,8 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Chunk, chunk_clear)
 
 static bool chunk_init(Chunk *chunk, const Writer *writer, GError **error)
 {
-    const size_t rows = (size_t)writer->n_channels * writer->chunk_rows;
+    const size_t rows = (size_t)writer->row_units * writer->chunk_rows;
+    const size_t width = (size_t)writer->width;
     const size_t row_bytes = sizeof *chunk->halves * (size_t)writer->width;
     chunk->compressor = libdeflate_alloc_compressor(ZIP_LEVEL);
     chunk->halves = fl_alloc_unset(rows, row_bytes, "an OpenEXR file", error);
@@ -177,9 +226,14 @@ static bool chunk_init(Chunk *chunk, const Writer *writer, GError **error)
     chunk->packed = chunk->bytes ? fl_alloc_unset(rows, row_bytes, "an OpenEXR file", error) : NULL;
     chunk->rgba =
         chunk->packed ? fl_alloc((size_t)writer->width, 4, "an OpenEXR file", error) : NULL;
-    if (chunk->rgba && !chunk->compressor)
+    float *mattes = chunk->rgba ? fl_alloc(width * (FL_MATTES_CHANNELS + 1), sizeof *mattes,
+                                           "an OpenEXR file", error)
+                                : NULL;
+    if (mattes)
+        chunk->mattes = (FlMatteRow){writer->width, mattes, mattes + width * FL_MATTES_CHANNELS};
+    if (mattes && !chunk->compressor)
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to compress");
-    return chunk->rgba && chunk->compressor;
+    return mattes && chunk->compressor;
 }
 
 /**
@@ -231,20 +285,50 @@ static void put_row(const uint8_t *restrict rgba, int width, int component,
     }
 }
 
+/** The mattes of row y, from the top layer down. */
+static void make_mattes(Chunk *chunk, const Writer *writer, int y)
+{
+    fl_matte_row_begin(chunk->mattes);
+    for (int k = writer->frame->n_layers; k-- > 0;) {
+        const Layer *layer = &writer->frame->layers[k];
+        if (writer->id[k] && copy_row(chunk, writer, layer, y))
+            fl_matte_row_add(chunk->mattes, writer->id[k], chunk->rgba + 3);
+    }
+}
+
+/** Floats, the lower half of their bits first. */
+static void put_floats(const float *value, int n, uint16_t *halves)
+{
+    for (int x = 0; x < n; x++) {
+        guint32 bits;
+        memcpy(&bits, &value[x], sizeof bits);
+        halves[2 * x] = (uint16_t)(bits & 0xffff), halves[2 * x + 1] = (uint16_t)(bits >> 16);
+    }
+}
+
 static void fill_chunk(Chunk *chunk, const Writer *writer, int y, int n)
 {
     uint16_t *halves = chunk->halves;
     const int width = writer->width;
-    bool filled = false;
-    for (int r = 0; r < n; r++)
-        for (int c = 0; c < writer->n_channels; c++, halves += width) {
-            if (c == 0 || writer->layer[c] != writer->layer[c - 1])
-                filled = copy_row(chunk, writer, writer->layer[c], y + r);
-            if (filled)
+    for (int r = 0; r < n; r++) {
+        const Layer *copied = NULL;
+        bool filled = false;
+        if (has_mattes(writer))
+            make_mattes(chunk, writer, y + r);
+        for (int c = 0; c < writer->n_channels; c++) {
+            const Layer *layer = writer->layer[c];
+            if (layer && layer != copied)
+                filled = copy_row(chunk, writer, copied = layer, y + r);
+            if (!layer)
+                put_floats(chunk->mattes.value + (size_t)writer->component[c] * (size_t)width,
+                           width, halves);
+            else if (filled)
                 put_row(chunk->rgba, width, writer->component[c], halves);
             else
                 memset(halves, 0, sizeof *halves * (size_t)width);
+            halves += layer ? width : 2 * width;
         }
+    }
 }
 
 /** Packs the chunks that fall to a thread and writes them, all threads' in their order. */
@@ -260,7 +344,7 @@ static void put_chunks(Writer *writer, bool *put, GError **error)
         size_t n_bytes = 0;
         if (ready) {
             fill_chunk(&chunk, writer, y, n);
-            packed = pack_halves(&chunk, (size_t)n * writer->n_channels * writer->width, &n_bytes);
+            packed = pack_halves(&chunk, (size_t)n * writer->row_units * writer->width, &n_bytes);
         }
 #pragma omp ordered
         *put = *put && ready &&
@@ -301,11 +385,17 @@ static bool put_file(Writer *writer, FlAtomicFile *file, const FlSinkFrame *fram
 
 static bool exr_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
 {
-    Writer writer = {
-        .mark = sink->mark, .width = sink->params.width, .height = sink->params.height};
+    g_autofree guint32 *ids = g_new(guint32, MAX(frame->n_layers, 1));
+    Writer writer = {.mark = sink->mark,
+                     .width = sink->params.width,
+                     .height = sink->params.height,
+                     .frame = frame,
+                     .id = ids};
     const char *path = sink->file.path;
     GError *problem = NULL;
     fill_halves();
+    for (int k = 0; k < frame->n_layers; k++)
+        ids[k] = frame->layers[k].region ? fl_matte_id(frame->layers[k].region) : 0;
     const bool put = put_file(&writer, &sink->file, frame, &problem);
     g_free(writer.layer);
     g_free(writer.component);
@@ -320,7 +410,7 @@ static bool exr_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
 const FlSinkFormat fl_sink_exr = {
     .name = "exr",
     .suffix = ".exr",
-    .help = "an OpenEXR file per frame, half float, linear, with all layers",
+    .help = "an OpenEXR file per frame, half float, linear, with all layers and mattes",
     .takes_layers = true,
     .frame = exr_frame,
 };

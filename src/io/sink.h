@@ -15,6 +15,7 @@
 /** One layer of a frame, straight sRGBA; see compose/layers.h for how layers recompose. */
 typedef struct FlSinkLayer {
     const char *name;
+    const char *region;      // that the layer is of; NULL: the layer is of none
     int x, y, width, height; // its place in the frame
     const uint8_t *rgba;     // width * height * 4; NULL: it is `runs`
     const FlPixelRuns *runs; // of its rows; NULL: it is `rgba`

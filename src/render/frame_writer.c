@@ -81,6 +81,7 @@ static int stack_layers(const FlFrameWriter *writer, const FlComposite *composit
         const FlLayer *from = &composite->layers[k];
         const FlRect box = from->area.box;
         layers[n++] = (FlSinkLayer){.name = composite->names[k],
+                                    .region = composite->regions[k],
                                     .x = box.x,
                                     .y = box.y,
                                     .width = box.width,
