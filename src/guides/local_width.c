@@ -310,73 +310,33 @@ static bool smooth(uint16_t *plane, int width, int height, int r, GError **error
     return true;
 }
 
-/** A pixel outside that has been reached. */
-typedef struct Reached {
-    int16_t x, y, value;
-} Reached;
-
-#define REACHED (-1) // its value is not known yet
-
-/** Adds the pixels outside next to one that is known. */
-static void reach_around(int16_t *plane, int width, int height, int x, int y, GArray *reached)
+/** The largest of three values side by side. */
+static void widen_row(const int16_t *row, int width, int16_t *most)
 {
-    for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, height - 1); ny++)
-        for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, width - 1); nx++) {
-            int16_t *value = &plane[(size_t)ny * (size_t)width + (size_t)nx];
-            if (*value)
-                continue;
-            const Reached pixel = {(int16_t)nx, (int16_t)ny, 0};
-            g_array_append_val(reached, pixel);
-            *value = REACHED;
-        }
-}
-
-/** Adds the pixels outside next to the shape. */
-static void reach_from_shape(int16_t *plane, int width, int height, GArray *reached)
-{
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++)
-            if (plane[(size_t)y * (size_t)width + (size_t)x] > 0)
-                reach_around(plane, width, height, x, y, reached);
-}
-
-static int16_t largest_around(const int16_t *plane, int width, int height, int x, int y)
-{
-    int16_t largest = 0;
-    for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, height - 1); ny++)
-        for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, width - 1); nx++)
-            largest = MAX(largest, plane[(size_t)ny * (size_t)width + (size_t)nx]);
-    return largest;
-}
-
-/** Sets the pixels that have been reached to the largest value around them. */
-static void settle(int16_t *plane, int width, int height, GArray *reached)
-{
-    Reached *pixel = (Reached *)(void *)reached->data;
-    for (guint k = 0; k < reached->len; k++)
-        pixel[k].value = largest_around(plane, width, height, pixel[k].x, pixel[k].y);
-    for (guint k = 0; k < reached->len; k++)
-        plane[(size_t)pixel[k].y * (size_t)width + (size_t)pixel[k].x] = pixel[k].value;
+    for (int x = 0; x < width; x++)
+        most[x] = MAX(row[x], MAX(row[MAX(x - 1, 0)], row[MIN(x + 1, width - 1)]));
 }
 
 /** Pixels outside get the largest value around them, ring by ring. */
-static void extend(uint16_t *half_width, int width, int height)
+static bool extend(uint16_t *half_width, int width, int height, GError **error)
 {
     int16_t *plane = (int16_t *)half_width; // no half width is larger
-    g_autoptr(GArray) last = g_array_new(FALSE, FALSE, sizeof(Reached));
-    g_autoptr(GArray) next = g_array_new(FALSE, FALSE, sizeof(Reached));
-    reach_from_shape(plane, width, height, last);
-    settle(plane, width, height, last);
-    for (int ring = 1; ring < FL_WIDTH_OUTSIDE_PX; ring++) {
-        g_array_set_size(next, 0);
-        for (guint k = 0; k < last->len; k++) {
-            const Reached *pixel = &g_array_index(last, Reached, k);
-            reach_around(plane, width, height, pixel->x, pixel->y, next);
+    const size_t w = (size_t)width;
+    g_autofree int16_t *wide = fl_alloc_unset(w * (size_t)height, sizeof *wide, "widths", error);
+    for (int ring = 0; wide && ring < FL_WIDTH_OUTSIDE_PX; ring++) {
+        for (int y = 0; y < height; y++)
+            widen_row(plane + (size_t)y * w, width, wide + (size_t)y * w);
+        for (int y = 0; y < height; y++) {
+            int16_t *row = plane + (size_t)y * w;
+            const int16_t *own = wide + (size_t)y * w;
+            const int16_t *up = y > 0 ? own - w : own, *down = y + 1 < height ? own + w : own;
+            for (int x = 0; x < width; x++) {
+                const int16_t most = MAX(own[x], MAX(up[x], down[x]));
+                row[x] = row[x] ? row[x] : most;
+            }
         }
-        settle(plane, width, height, next);
-        GArray *ring_before = last;
-        last = next, next = ring_before;
     }
+    return wide;
 }
 
 bool fl_local_width(const float *distance, const uint8_t *seen, int width, int height, float cap_px,
@@ -393,6 +353,5 @@ bool fl_local_width(const float *distance, const uint8_t *seen, int width, int h
     if (!smooth(half_width, width, height, MAX(cap / (4 * FL_WIDTH_ONE), 1), error) ||
         !smooth(half_width, width, height, MAX(cap / (8 * FL_WIDTH_ONE), 1), error))
         return false;
-    extend(half_width, width, height);
-    return true;
+    return extend(half_width, width, height, error);
 }

@@ -36,7 +36,9 @@ bool fl_material_motion(const FlGuides *guides, int x, int y, float motion[2])
 /* ---- measuring ---------------------------------------------------------------------------------
  */
 
-void fl_material_gradient(const FlMaterial *material, int x, int y, float f[2][2])
+/* The gradient of the material at a pixel of the rectangle: the columns of d(material) / d(pixel),
+ * by central differences. */
+static void gradient(const FlMaterial *material, int x, int y, float f[2][2])
 {
     const int width = material->rect.width, height = material->rect.height;
     const int left = MAX(x - 1, 0), right = MIN(x + 1, width - 1);
@@ -60,7 +62,7 @@ static float inverse_of(float factor)
 void fl_material_inverse(const FlMaterial *material, int x, int y, float inverse[2][2])
 {
     float f[2][2];
-    fl_material_gradient(material, x, y, f);
+    gradient(material, x, y, f);
     const float a = 0.5f * (f[0][0] + f[1][1]), b = 0.5f * (f[1][0] - f[0][1]);
     const float c = 0.5f * (f[0][0] - f[1][1]), d = 0.5f * (f[1][0] + f[0][1]);
     const float turned = sqrtf(a * a + b * b), mirrored = sqrtf(c * c + d * d);
@@ -117,7 +119,7 @@ static bool excess_of(const FlMaterial *material, const FlGuides *guides, const 
         if (x < 0 || y < 0 || x >= material->rect.width || y >= material->rect.height ||
             !fl_material_is_inside(material, guides, x, y))
             continue;
-        fl_material_gradient(material, x, y, g);
+        gradient(material, x, y, g);
         for (int c = 0; c < 4; c++) {
             const float d = f[c / 2][c % 2] - g[c / 2][c % 2];
             more[c / 2][c % 2] = d + (c == 0 || c == 3);
@@ -135,7 +137,7 @@ static bool excess_of(const FlMaterial *material, const FlGuides *guides, const 
 static float tear_at(const FlMaterial *material, const FlGuides *guides, int x, int y, int reach)
 {
     float f[2][2], across[2][2], along[2][2];
-    fl_material_gradient(material, x, y, f);
+    gradient(material, x, y, f);
     if (tear_of(f) == 0)
         return 0;
     memcpy(across, f, sizeof f), memcpy(along, f, sizeof f);
@@ -150,7 +152,7 @@ static float tear_at(const FlMaterial *material, const FlGuides *guides, int x, 
 static float end_of(const FlMaterial *share, int x, int y)
 {
     float f[2][2];
-    fl_material_gradient(share, x, y, f);
+    gradient(share, x, y, f);
     return fl_smooth((hypotf(f[1][0], f[1][1] - 1) - SHARED) / (ENDED - SHARED));
 }
 
@@ -240,7 +242,7 @@ bool fl_material_strain(const FlMaterial *material, const FlGuides *guides, int 
         for (int x = 0; x < rect.width; x++) {
             const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
             float f[2][2];
-            fl_material_gradient(material, x, y, f);
+            gradient(material, x, y, f);
             inside[p] = fl_material_is_inside(material, guides, x, y);
             strain[p] = inside[p] > 0 ? strain_of(f) : 0;
         }
@@ -251,39 +253,40 @@ bool fl_material_strain(const FlMaterial *material, const FlGuides *guides, int 
     return true;
 }
 
-void fl_material_add_fit(const FlMaterial *material, const FlMaterial *share, size_t layer,
-                         const FlGuides *guides, FlFit *s)
+/* The rigid motion that fits a material best: it puts (u, v) of the material on (x, y) of the
+ * frame, turned around that point. */
+typedef struct Rigid {
+    double cosine, sine, x, y, u, v;
+} Rigid;
+
+/* The best fit of the region's pixels, in order, so that the sums are reproducible; without pixels
+ * as the material lies in a first frame. */
+static Rigid fit_of(const FlMaterial *material, const FlGuides *guides)
 {
     const FlRect r = material->rect;
+    double n = 0, sx = 0, sy = 0, su = 0, sv = 0, dots = 0, crosses = 0;
     for (int j = 0; j < r.height; j++)
         for (int i = 0; i < r.width; i++)
             if (fl_material_is_inside(material, guides, i, j)) {
                 const size_t p = (size_t)j * (size_t)r.width + (size_t)i;
-                const double w = share->shift ? (double)share->shift[2 * p + layer] : 1;
                 const double x = i + r.x, y = j + r.y;
                 const double u = x + (double)material->shift[2 * p];
                 const double v = y + (double)material->shift[2 * p + 1];
-                s->n += w, s->x += w * x, s->y += w * y, s->u += w * u, s->v += w * v;
-                s->dot += w * (x * u + y * v), s->cross += w * (x * v - y * u);
+                n++, sx += x, sy += y, su += u, sv += v;
+                dots += x * u + y * v, crosses += x * v - y * u;
             }
-}
-
-FlRigid fl_material_rigid(const FlFit *s)
-{
-    const double n = s->n > 0 ? s->n : 1;
-    const double x = s->x / n, y = s->y / n, u = s->u / n, v = s->v / n;
-    const double dot = s->dot - n * (x * u + y * v), cross = s->cross - n * (x * v - y * u);
+    n = n > 0 ? n : 1;
+    const double x = sx / n, y = sy / n, u = su / n, v = sv / n;
+    const double dot = dots - n * (x * u + y * v), cross = crosses - n * (x * v - y * u);
     const double length = sqrt(dot * dot + cross * cross);
-    return (FlRigid){length > 0 ? dot / length : 1, length > 0 ? cross / length : 0, x, y, u, v};
+    return (Rigid){length > 0 ? dot / length : 1, length > 0 ? cross / length : 0, x, y, u, v};
 }
 
 bool fl_material_relaxed(const FlMaterial *material, const FlGuides *guides, FlMaterial *relaxed,
                          GError **error)
 {
-    FlFit sums = {0};
     const FlRect r = material->rect;
-    fl_material_add_fit(material, &(FlMaterial){0}, 0, guides, &sums);
-    const FlRigid lies = fl_material_rigid(&sums);
+    const Rigid lies = fit_of(material, guides);
     *relaxed = (FlMaterial){r, fl_alloc(2 * fl_rect_pixels(r), sizeof(float), "a material", error)};
     if (!relaxed->shift)
         return false;

@@ -33,12 +33,6 @@ bool fl_material_carry(const FlMaterial *before, const FlGuides *guides, const F
                        FlMaterial *now, GError **error);
 
 /**
- * The gradient of the material at a pixel of the rectangle: the columns of d(material) / d(pixel),
- * by central differences.
- */
-void fl_material_gradient(const FlMaterial *material, int x, int y, float f[2][2]);
-
-/**
  * The matrix from displacements of the material to those of the frame at a pixel: the gradient's
  * inverse, so that the density of ink does not depend on the material's deformation. It stretches
  * by a factor of 2 at most.
@@ -64,25 +58,6 @@ bool fl_material_strain(const FlMaterial *material, const FlGuides *guides, int 
  */
 bool fl_material_whole(const FlMaterial *material, const FlMaterial *share, const FlGuides *guides,
                        float reach_px, float *whole, GError **error);
-
-/** Sums over a region's pixels (x, y) and their material (u, v). */
-typedef struct FlFit {
-    double n, x, y, u, v, dot, cross;
-} FlFit;
-
-/** The rigid motion that fits a material best: puts (u, v) of the material on (x, y) of the frame,
- * turned around that point. */
-typedef struct FlRigid {
-    double cosine, sine, x, y, u, v;
-} FlRigid;
-
-/** Adds the region's pixels, weighted by the visible share of the `layer`, 0 or 1; share has shifts
- * or not. Serial, so that the sums are reproducible. */
-void fl_material_add_fit(const FlMaterial *material, const FlMaterial *share, size_t layer,
-                         const FlGuides *guides, FlFit *sums);
-
-/** The best fit; without pixels as it lies in a first frame. */
-FlRigid fl_material_rigid(const FlFit *sums);
 
 /** The material as it would lie had it only been turned and moved: the best fit in the region. */
 bool fl_material_relaxed(const FlMaterial *material, const FlGuides *guides, FlMaterial *relaxed,
