@@ -353,6 +353,101 @@ static void a_change_of_any_option_starts_the_render_anew(void)
     g_unlink(film.state);
 }
 
+/* ---- digests --------------------------------------------------------------------------------- */
+
+/* The digests of all that decides a film's frames, and the paint of its first region. */
+typedef struct Digests {
+    FlDigest frames, paint;
+} Digests;
+
+static Digests digests_of(const FlRenderOptions *options)
+{
+    FlRenderOptions own = *options;
+    own.cache = NULL;
+    g_autoptr(FlPlan) plan = plan_of(&own);
+    const FlShapes *shapes = &plan->shapes;
+    g_autoptr(FlFacts) frames = fl_plan_facts(plan), guides = fl_plan_facts_of_paint(plan);
+    g_autoptr(FlFacts) paint = fl_region_facts(shapes, &shapes->painted[0], plan->inputs);
+    fl_facts_append(paint, guides);
+    fl_region_facts_add_flow(paint, shapes, 0, plan->inputs);
+    return (Digests){fl_facts_digest(frames), fl_facts_digest(paint)};
+}
+
+static void assert_differ(const char *what, Digests a, Digests b, bool paint)
+{
+    if (fl_digest_is_same(a.frames, b.frames))
+        g_error("%s is no fact of the frames", what);
+    if (paint && fl_digest_is_same(a.paint, b.paint))
+        g_error("%s is no fact of the paint", what);
+}
+
+static void assert_file_counts(const FlRenderOptions *options, Digests before, const char *name,
+                               bool paint)
+{
+    g_autofree char *path = path_in(name), *saved = NULL;
+    gsize bytes;
+    g_assert_true(g_file_get_contents(path, &saved, &bytes, NULL));
+    change(path);
+    assert_differ(name, before, digests_of(options), paint);
+    g_assert_true(g_file_set_contents(path, saved, (gssize)bytes, NULL));
+}
+
+static void files_count_for_frames_and_paint(void)
+{
+    static const char *const of_paint[] = {"p.png", "f_2.flo", "style/style.ini",
+                                           "tile/transport.png"};
+    const char *inputs[2];
+    FlSetting settings[3];
+    FlRenderOptions options = options_of(inputs, settings);
+    g_free(scratch_write(film.folder, "hand.png", "directions"));
+    g_free(scratch_write(film.folder, "kept_1.png", "paint"));
+    g_autofree char *hand = path_in("hand.png"), *kept = path_in("kept_%d.png");
+    options.directions = hand;
+    Digests before = digests_of(&options);
+    for (size_t k = 0; k < G_N_ELEMENTS(of_paint); k++)
+        assert_file_counts(&options, before, of_paint[k], true);
+    assert_file_counts(&options, before, "hand.png", false);
+    options.frames = "4"; // which begins on the paper that the frames before it have wetted
+    before = digests_of(&options);
+    assert_file_counts(&options, before, "w_2.svg", false);
+    options.frames = NULL, options.merge = true, options.paint = kept;
+    options.only_region = "red-aa3311";
+    before = digests_of(&options);
+    assert_file_counts(&options, before, "kept_1.png", false);
+}
+
+/* Of two configs and settings the paint of the first region differs. */
+static void settings_count_for_frames_and_paint(void)
+{
+    g_autofree char *keyed = g_strdup_printf("%s@1 %s@3", film.style, film.style);
+    g_autofree char *later = g_strdup_printf("%s@1 %s@4", film.style, film.style);
+    const struct {
+        const char *config[2], *name, *value[2];
+    } cases[] = {
+        {{"", ""}, "style", {keyed, later}},
+        {{"", ""}, "hold", {"1", "2"}},
+        {{"", ""}, "w-temp", {"1", "2"}},
+        {{"[region red-aa3311]\nhold = 1", "[region red-aa3311]\nhold = 1"}, "hold", {"1", "2"}},
+        {{"", "[region black-000000]\nedges = soft"}, "w-temp", {"1", "1"}},
+        {{"[region red-aa3311]\nmatch-fill = #aa3311", "[region red-aa3311]\nmatch = *"},
+         "w-temp",
+         {"1", "1"}},
+    };
+    for (size_t k = 0; k < G_N_ELEMENTS(cases); k++) {
+        Digests digests[2];
+        for (int i = 0; i < 2; i++) {
+            const char *inputs[2];
+            FlSetting settings[3];
+            FlRenderOptions options = options_of(inputs, settings);
+            settings[1] = (FlSetting){.name = cases[k].name, .value = cases[k].value[i]};
+            options.config_text = cases[k].config[i];
+            digests[i] = digests_of(&options);
+        }
+        g_autofree char *what = g_strdup_printf("%s %s", cases[k].name, cases[k].config[1]);
+        assert_differ(what, digests[0], digests[1], true);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -364,6 +459,9 @@ int main(int argc, char **argv)
                     a_change_beside_the_inputs_is_seen);
     g_test_add_func("/facts/a-change-of-any-option-starts-the-render-anew",
                     a_change_of_any_option_starts_the_render_anew);
+    g_test_add_func("/facts/files-count-for-frames-and-paint", files_count_for_frames_and_paint);
+    g_test_add_func("/facts/settings-count-for-frames-and-paint",
+                    settings_count_for_frames_and_paint);
     const int status = g_test_run();
     film_clear();
     return status;
