@@ -17,6 +17,14 @@ for f in $(seq 1 24); do
         "$svg" $((3 * f)) >"$out/turning/$(printf %04d.svg "$f")"
 done
 
+# A puff that rises from a resting foot and swells.
+mkdir -p "$out/puff"
+for f in $(seq 1 24); do
+    r=$((16 + f)) y=$((150 - 4 * f))
+    printf '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 200"><path id="puff" fill="#505868" d="M85 190L90 %dL110 %dL115 190ZM%d %da%d %d 0 1 1 %d 0a%d %d 0 1 1 %d 0Z"/></svg>\n' \
+        $y $y $((100 - r)) $y $r $((r * 3 / 4)) $((2 * r)) $r $((r * 3 / 4)) $((-2 * r)) >"$out/puff/$(printf %04d.svg "$f")"
+done
+
 page=$out/index.html
 cat >"$page" <<END
 <!doctype html>
@@ -60,6 +68,12 @@ still="--tint keep --style-by-page off --style-scale .4 --motion auto --fluid no
     figure blur 'LazyFluids, figure 9: motion blur' \
         'The output is blurred along its motion while the shutter is open, none at the middle and most at the rim; the next frame comes from the sharp one.' \
         lazyfluids-steady,lazyfluids-steady:motion-blur=1,lazyfluids-steady:motion-blur=2 "$out/turning" -s 15 $still -f 1-6
+    figure fluid 'A fluid inside the outline, which none of the papers has' \
+        'With the fluid of smoke, first row, threads rise through the stem and roll up to both sides in the cap. Without a fluid paint knows the outline alone: what is in the cap grows with it, and the stem lags behind.' \
+        lazyfluids-steady:fluid=smoke,lazyfluids-steady:fluid=none "$out/puff" -s 16
+    figure transport 'Transport: ink that moves, and is never made or lost' \
+        'First row: the ink before it moves, a flat fill. Second row: it has become the picture of the style, which rides on the outline. Third row: a fluid carries that picture, and draws it out into rolls.' \
+        transport:strength=0:fluid=none,transport:fluid=none,transport:fluid=smoke "$out/puff" -s 14 --wash 0 --front 0 --stain 0 --hue 0
     width=240 # the presets of the papers count in pixels: a border of 30 px must leave an interior
     figure ablation 'Fluidymation, the seven terms of the energy' \
         'First row: all terms. Without texture the first frame is a heap of patches that do not fit, with a blurred rim; later frames get theirs by the temporal term. Without the boundary term rims are cut smooth, and fringes and holes lie anywhere. Without direction, and without turning patches into it, fringes point anywhere and rims fray. Without extents little changes here. Without the temporal term the slice breaks into steps: every frame has another texture. Without uniformity few patches are used, and the middle is flat.' \

@@ -220,7 +220,9 @@ static bool paint(Comparison *c, const Variant *variant, int row, GError **error
     c->row = row, c->frame = 0;
     if (!fl_render_frames(&options, show_frame, c, error))
         return false;
-    fl_contact_sheet_name_row(&c->contact, row, variant->name, "");
+    g_auto(GStrv) parts = g_strsplit(variant->name, ":", 2); // of a method and its settings
+    const char *lines = parts[1] ? g_strdelimit(parts[1], ":", '\n') : "";
+    fl_contact_sheet_name_row(&c->contact, row, parts[0], lines);
     return true;
 }
 
@@ -306,7 +308,7 @@ bool fl_compare_styles(const FlRenderOptions *options, const char *const *styles
 
 static const Variant methods[] = {
     {"default",
-     "Patches of the recording, which follow its time, and half of the drawing's own motion.",
+     "Patches of the recording, which follow its time and ride on the drawing's own motion.",
      PRESET("default")},
     {"fluidymation",
      "Fluidymation, 2021, table 1: motion from the masks; the recording's frames are chosen by how "
