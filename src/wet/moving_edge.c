@@ -259,7 +259,7 @@ static void find_kept(const FlWetShape *shape, float speed_before, FlEdgePoint *
     const float px = shape->px, width = MAX(half_way_over(shape, point), 2 * px);
     const float moved = sqrtf(point->u * point->u + point->v * point->v);
     const float speed = moved / shape->frames, shrunk = MAX(-point->speed, 0) * shape->frames;
-    const float contact = 1 / (1 + 1.5f * speed / width);
+    const float quick = 1.5f * speed / width, contact = 1 / (1 + quick * quick);
     const float rested = 0.8f + 0.4f * fl_bell(speed_before / px);
     point->kept = fl_bell(speed / (2.2f * width)) * contact * rested *
                   (1 - fl_ease(1.3f, 2, shrunk / (moved + 3 * px)));

@@ -95,7 +95,7 @@ static float away_from_sides(const FlWetShape *shape, float depth)
 }
 
 /** A mark lasts from the frame before to this one, and so do its strength and its ink: in one piece
- * with the marks of the frames around. */
+ * with the marks of the frames around, unless the shape leaps away. */
 static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, float now,
                  GArray *marks)
 {

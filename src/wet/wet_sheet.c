@@ -248,14 +248,18 @@ static void add_ink(FlWetCell *cell, float more, const float ink[3], float granu
     cell->granulation = between(cell->granulation, granulation, share);
 }
 
-/** A cell has one stain, the stronger: the weaker leaves no trace. */
+/** Paint that passes takes up what lay in its way. A cell has one stain, the stronger: the weaker
+ * leaves no trace. */
 static void stain_cell(const FlWetSheet *sheet, const FlFrontStyle *style, const FlStainMark *mark,
                        FlWetCell *cell)
 {
     const float hollow = share_of(fl_wet_sheet_grain(sheet, mark->at).hollow);
-    const float old = cell->depth > 0 ? cell->stain * left_of(sheet, cell->age, hollow) : 0;
+    float old = cell->depth > 0 ? cell->stain * left_of(sheet, cell->age, hollow) : 0;
     const float stain = style->stain * mark->charge, film = style->film * mark->charge;
-    cell->front *= 1 - mark->lost;
+    const float stays = 1 - mark->lost;
+    cell->front *= stays;
+    if (mark->depth > 0)
+        cell->stain *= stays, cell->film *= stays, old *= stays;
     if (stain * left_of(sheet, mark->age, hollow) <= old || (mark->depth <= 0 && old > 0))
         return;
     cell->stain = cell->film = 0;
