@@ -67,6 +67,30 @@ static void regions_over_each_other_are_the_drawing(const void *name)
     g_assert_cmpfloat(psnr, >=, LEAST_DB);
 }
 
+/** The horse's neck and legs end in the colour of its body, but for rounding; those behind do not.
+ */
+static void gradients_go_over_into_skins(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *folder = fixture("horse-gallop", NULL);
+    const char *const inputs[] = {folder, NULL};
+    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1};
+    g_autoptr(FlDrawing) drawing = fl_drawing_open(&options, NULL, &error);
+    int body = 0, behind = 0;
+    g_assert_no_error(error);
+    for (int r = 0; r < fl_drawing_regions(drawing); r++) {
+        const FlRegion *region = fl_drawing_region(drawing, r);
+        if (!g_str_equal(region->paint, "gradient")) {
+            g_assert_cmpstr(region->skin, ==, region->paint);
+            continue;
+        }
+        body += g_str_equal(region->skin, "#fdae5f"),
+            behind += g_str_equal(region->skin, "#b3865d");
+    }
+    g_assert_cmpint(body, ==, 2);
+    g_assert_cmpint(behind, ==, 1);
+}
+
 int main(int argc, char **argv)
 {
     static const char *const names[] = {
@@ -85,5 +109,6 @@ int main(int argc, char **argv)
         g_test_add_data_func(table, names[i], the_table_of_regions_is_the_stored_one);
         g_test_add_data_func(flat, names[i], regions_over_each_other_are_the_drawing);
     }
+    g_test_add_func("/drawings/gradients-go-over-into-skins", gradients_go_over_into_skins);
     return g_test_run();
 }

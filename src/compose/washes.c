@@ -61,13 +61,6 @@ static void put_together(const FlWashField *field)
     fl_field_centre(field, hues, share_of_hue, hue);
 }
 
-/* The fill of a region through the film, by which shapes are one wash; NULL: it has none. */
-static const char *fill_of(const FlComposeInput *input, int region)
-{
-    const char *paint = fl_drawing_region(input->drawing, region)->paint;
-    return paint[0] == '#' ? paint : NULL;
-}
-
 /* In steps of a twentieth: a film of which one frame is edited keeps the washes of the others. */
 static float in_steps(float px)
 {
@@ -80,12 +73,12 @@ static float in_steps(float px)
 /* The side of a square that is as large as the shapes of a fill: the same in all frames. */
 static float size_of(const FlComposeInput *input, int region)
 {
-    const char *fill = fill_of(input, region);
+    const char *skin = fl_drawing_region(input->drawing, region)->skin;
     float most = 0;
     for (int p = 0; p < input->n_painted; p++) {
         const FlPaintedRegion *other = input->painted[p];
-        const char *its = fill_of(input, other->region);
-        if (other->region == region || (fill && its && g_str_equal(fill, its)))
+        const char *its = fl_drawing_region(input->drawing, other->region)->skin;
+        if (other->region == region || (skin && g_strcmp0(skin, its) == 0))
             most = MAX(most, other->anchor.side);
     }
     return in_steps(fl_clamp(most / input->paper_px, 12, 600));
@@ -206,17 +199,20 @@ static int wash_of_region(FlWashes *washes, const FlComposeInput *input, int reg
     const FlPaintedRegion *painted = p >= 0 ? input->painted[p] : NULL;
     if (!painted || painted->from == FL_FROM_NOWHERE)
         return -1;
-    const char *fill = fill_of(input, region);
+    const FlRegion *own = fl_drawing_region(input->drawing, region);
     FlWash wash = {.painted = painted,
                    .style = style_of_region(input, p),
-                   .key = fl_key(input->seed, g_str_hash(fill ? fill : painted->name))};
+                   .key = fl_key(input->seed, g_str_hash(own->skin ? own->skin : painted->name))};
     if (wash.style.wash <= 0 && wash.style.hue <= 0)
         return -1;
     const char *style = (const char *)&wash.style; // floats alone
     for (int w = 0; w < washes->n; w++)
         if (washes->wash[w].key == wash.key &&
-            memcmp((const char *)&washes->wash[w].style, style, sizeof wash.style) == 0)
+            memcmp((const char *)&washes->wash[w].style, style, sizeof wash.style) == 0) {
+            if (own->paint[0] == '#') // not of a part that goes over into others
+                washes->wash[w].painted = painted;
             return w;
+        }
     washes->wash = g_renew(FlWash, washes->wash, washes->n + 1);
     washes->wash[washes->n] = wash;
     return washes->n++;

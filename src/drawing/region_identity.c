@@ -260,7 +260,7 @@ static void add_up(const Work *w, const FlSurveyPart *s, int track, FlRegionIden
     *area += s->area_px;
     if (*area > sum->best) {
         sum->best = *area;
-        group->kind = s->kind;
+        group->kind = s->kind, group->paint = s->paint;
         group->label = w->label_of[s->labels];
         memcpy(group->rgb, s->rgb, 3);
     }

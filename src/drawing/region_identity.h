@@ -11,6 +11,7 @@ typedef struct FlRegionIdentity {
     bool stroke, shade; // of strokes that are not painted; a translucent overlay
     FlPaintKind kind;   // of the paint that covers most
     uint8_t rgb[3];     // its colour
+    int paint;          // its key, a number in FlSurvey.strings
 } FlRegionIdentity;
 
 /**
