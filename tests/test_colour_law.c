@@ -42,14 +42,19 @@ static double lightness_of(const double *level)
     return fmax(116 * cbrt(y) - 16, 0);
 }
 
-static double slope_of(const Curve *curve)
+static double mean_step(const Curve *curve)
 {
     double y = 0, sum = 0;
     for (int c = 0; c < 3; c++) {
         y += weight[c] * light(curve->fill[c]);
         sum += weight[c] * light(curve->fill[c]) * curve->step[c];
     }
-    return (lightness_of(curve->fill) + 16) / 3 * 2.2 * sum / y;
+    return sum / y;
+}
+
+static double slope_of(const Curve *curve)
+{
+    return (lightness_of(curve->fill) + 16) / 3 * 2.2 * mean_step(curve);
 }
 
 static void steps(Curve *curve)
@@ -90,6 +95,19 @@ static void curve_of(Curve *curve, const uint8_t *fill, const uint8_t *paper, do
     curve->shade[2] = k;
 }
 
+static void make_shade_pure(Curve *curve)
+{
+    double y = 0, sum = 0, share[3];
+    const double mean = mean_step(curve);
+    for (int c = 0; c < 3; c++) {
+        share[c] = .4 + .6 * fmin((curve->step[c] + .06) / (mean + .06), 3);
+        y += weight[c] * light(curve->fill[c]);
+        sum += weight[c] * light(curve->fill[c]) * share[c];
+    }
+    for (int c = 0; c < 3; c++)
+        curve->shade[c] *= share[c] * y / sum;
+}
+
 static double thin_level(const Curve *curve, int c, double a)
 {
     const double paper = curve->paper[c], fill = curve->fill[c];
@@ -125,6 +143,7 @@ static void reference(const uint8_t *fill, const uint8_t *paper, double spread, 
     for (int c = 0; c < 3; c++)
         other_fill[c] = 255 - fill[c], other_paper[c] = 255 - paper[c];
     curve_of(&positive, fill, paper, 12, spread);
+    make_shade_pure(&positive);
     curve_of(&negative, other_fill, other_paper, 8, spread);
     const double u = unit((rise_of(fill, paper) - 5) / 13), t = u * u * (3 - 2 * u);
     for (int c = 0; c < 3; c++)
@@ -181,9 +200,9 @@ static void the_levels_are_the_same_everywhere(void)
           {254, 93, 252},
           {255, 46, 255},
           {255, 12, 255},
-          {208, 2, 208},
-          {182, 1, 182},
-          {139, 1, 139}}},
+          {209, 2, 209},
+          {183, 1, 183},
+          {140, 1, 140}}},
         {cream,
          {224, 224, 224},
          {{245, 240, 230},
@@ -211,9 +230,9 @@ static void the_levels_are_the_same_everywhere(void)
           {139, 194, 122},
           {105, 175, 88},
           {79, 157, 63},
-          {44, 123, 31},
-          {25, 98, 16},
-          {3, 40, 1}}},
+          {43, 124, 31},
+          {24, 98, 15},
+          {2, 40, 1}}},
         {cream,
          {255, 255, 0},
          {{245, 240, 230},

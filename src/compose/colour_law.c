@@ -16,6 +16,7 @@ enum {
     STRAIGHT = 4096,       // density of 0.957: below it the way is straight, and so well divided
     HEADROOM = 2836,       // density of exp(-0.03), by which light greys give way to thin paint
     EVEN_SPREAD = 700,     // spread (0.68) from which on saturated fills are shaded less
+    FAINT = 5673,          // density of .06: of fainter fills the hue hardly counts
     LIGHT_AT = 5 * 256,    // L* / 256 above the paper's from where on a fill may be light paint,
     LIGHT_OVER = 13 * 256, // and over which it becomes so altogether
     FALL = 7 * 256         // L* / 256 from the paper down to the fill over which the knee goes
@@ -75,6 +76,7 @@ static int64_t lightness16_of(const uint8_t rgb[3])
 typedef struct Lightness {
     int64_t lightness16; // L* + 16
     int64_t slope;       // L* an amount
+    int64_t step;        // density an amount, the mean of the channels by their light
 } Lightness;
 
 /** L* changes by (L* + 16) / 3 for a relative change of luminance, which is that of light: the
@@ -87,7 +89,7 @@ static Lightness lightness_of(const FlColourCurve *curve)
     int64_t mean = 0;
     for (int c = 0; c < 3; c++)
         mean += weight[c] * light_of(curve->fill[c]) / luminance * curve->step[c];
-    Lightness light = {.lightness16 = lightness16(luminance)};
+    Lightness light = {.lightness16 = lightness16(luminance), .step = mean >> 16};
     light.slope = (light.lightness16 * L_OF_OCTAVE >> 16) * (mean >> 16) >> 16;
     return light;
 }
@@ -134,6 +136,22 @@ static void set_shade(FlColourCurve *curve, const Lightness *light, int64_t slop
     curve->shade[0] = (int32_t)(shade * (25500 - 45 * yellow) / 25500);
     curve->shade[1] = (int32_t)(shade * (25500 + 16 * yellow) / 25500);
     curve->shade[2] = (int32_t)shade;
+}
+
+/** Makes most of the shade more of the fill's own pigment, which is purer as well as darker; its
+ * light stays. */
+static void make_shade_pure(FlColourCurve *curve)
+{
+    const Lightness light = lightness_of(curve);
+    const int64_t luminance = MAX(luminance_of(curve->fill), 1);
+    int64_t share[3], mean = 0;
+    for (int c = 0; c < 3; c++) {
+        const int64_t own = (curve->step[c] + FAINT) * FRACTION / (light.step + FAINT);
+        share[c] = 2 * FRACTION + 3 * MIN(own, 3 * FRACTION);
+        mean += weight[c] * light_of(curve->fill[c]) / luminance * share[c];
+    }
+    for (int c = 0; c < 3; c++)
+        curve->shade[c] = (int32_t)(curve->shade[c] * share[c] / MAX(mean >> 16, 1));
 }
 
 /** The density of a neutral white as light as the paper. */
@@ -262,8 +280,10 @@ static int32_t light_share(const uint8_t fill[3], const uint8_t paper[3])
 void fl_colour_law_init(FlColourLaw *law, const uint8_t fill[3], const uint8_t paper[3], int spread)
 {
     law->light_share = light_share(fill, paper);
-    if (law->light_share < 65536)
+    if (law->light_share < 65536) {
         curve_init(&law->dark, fill, paper, DARKEST, spread);
+        make_shade_pure(&law->dark); // light paint would clip to primaries
+    }
     if (law->light_share == 0)
         return;
     uint8_t other_fill[3], other_paper[3];

@@ -111,6 +111,16 @@ static float distance_of(const Candidate *candidate, const float fill[3])
            OF_COMPLEMENTS * (1 - harmony_of(candidate));
 }
 
+/* The purer pigment is the second one, which prevails in the shadow: greyer shadows look dirty. */
+static void swap_pigments(FlMixture *mixture)
+{
+    const FlPigment *first = mixture->pigment[0];
+    mixture->pigment[0] = mixture->pigment[1], mixture->pigment[1] = first;
+    mixture->share = 1 - mixture->share;
+    for (int c = 0; c < 3; c++)
+        mixture->turn[c] = -mixture->turn[c];
+}
+
 #define MOST_LIGHT .01f // of a channel, as the lighter pigment prevails by one CIE76
 
 /* The density that turns the hue by one CIE76 towards the second pigment. Much of the light stays,
@@ -143,6 +153,8 @@ static void find_turn(FlMixture *mixture)
     const float lighter = .5f * mean / weight * .02f / MAX(most, 1e-6f) * one;
     for (int c = 0; c < 3; c++)
         mixture->turn[c] = one * mixture->turn[c] + CLAMP(lighter, -MOST_LIGHT, MOST_LIGHT);
+    if (hypotf(turned[1], turned[2]) < hypotf(lab[1], lab[2]))
+        swap_pigments(mixture);
 }
 
 static FlMixture *search(const uint8_t fill[3])

@@ -49,8 +49,8 @@ static inline float bloom_at(const Slow slow)
     const float away = slow[FL_WASH_BLOOM], found = slow[FL_WASH_BLOOMS];
     if (away > 12 || found <= 0)
         return 0;
-    return away > 0 ? .30f * found * fl_decay(.5f * away)
-                    : found * (.30f * fl_decay(-away / 6) - .45f * fl_smooth(-away / 30));
+    return away > 0 ? .40f * found * fl_decay(.7f * away)
+                    : found * (.40f * fl_decay(-away / 5) - .50f * fl_smooth(-away / 20));
 }
 
 /* The ln of the factor on the amount by a wash of strength 1, and the balance of the pigments, at a
@@ -65,12 +65,14 @@ static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
     const float load = brush->load[k] + (brush->load[k + 1] - brush->load[k]) * next;
     const float ridge = crisp * fl_decay((1 - part) * brush->wash->brush_px / 7) * .7f;
     const float tide = tide_at(slow), free = 1 - fl_smooth(2.2f * tide);
+    const float dry = MAX(-slow[FL_WASH_TIDE], 0); // px from the line, on the side that is lighter
     *hue = slow[FL_WASH_HUE] + slow[FL_WASH_LINES] * .25f * load + .3f * tide;
     return slow[FL_WASH_TONE] +
            1.4f * style->passes * slow[FL_WASH_LINES] *
-               (.16f * load * (.5f + .5f * free) + .3f * ridge * free) +
+               (.2f * load * (.5f + .5f * free) + .2f * ridge * free) +
            1.2f * style->tide *
-               (.4f * tide - .16f * slow[FL_WASH_TIDES] * fl_smooth(slow[FL_WASH_TIDE] / 34)) +
+               (.34f * tide -
+                .22f * slow[FL_WASH_TIDES] * fl_smooth(dry / 3) * fl_decay(dry / 60)) +
            style->blooms * bloom_at(slow);
 }
 

@@ -81,7 +81,7 @@ static void find_tide(const FlWash *wash, const Places *at, float *tide)
 {
     static const float wide[2] = {210, 190}, fine[2] = {26, 26};
     float crinkle[FL_NOISE_ROW];
-    noise_at(fl_key(wash->key, KEY_TIDE), at, wide, .25f, 2, .5f, tide);
+    noise_at(fl_key(wash->key, KEY_TIDE), at, wide, .25f, 1, 1, tide);
     noise_at(fl_key(wash->key, KEY_TIDE + 100), at, fine, 0, 2, .6f, crinkle);
     for (int i = 0; i < at->n; i++)
         tide[i] = (tide[i] + .055f * crinkle[i] - .18f) / .011f;
@@ -143,8 +143,8 @@ static void find_blooms(const FlWash *wash, const Places *at, Values values)
             at->x[i] - (float)cx * BLOOM_CELL - 1.5f * radius - room * fl_rng_float(&rng);
         const float dy =
             at->y[i] - (float)cy * BLOOM_CELL - 1.5f * radius - room * fl_rng_float(&rng);
-        const float away = sqrtf(dx * dx + 1.4f * dy * dy) - radius + .2f * radius * bend[i];
-        values[FL_WASH_BLOOM][i] = any ? away + 3 * crinkle[i] : 1000;
+        const float away = sqrtf(dx * dx + 1.4f * dy * dy) - radius + .35f * radius * bend[i];
+        values[FL_WASH_BLOOM][i] = any ? away + 5 * crinkle[i] : 1000;
         values[FL_WASH_BLOOMS][i] = any ? fl_smooth(.4f + .8f * values[FL_WASH_BLOOMS][i]) : 0;
     }
 }

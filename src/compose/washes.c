@@ -42,7 +42,7 @@ static void put_together(const FlWashField *field)
         tone[i] = .24f * fl_clamp(lit * field->side[i] + .45f * slow, -1.3f, 1.3f) + uneven * slow +
                   .38f * wash->style.pool * pool[i] -
                   wash->style.heart * heart[i] * (.55f + .2f * slow);
-        const float wander = 1.25f * hue[i] + .45f * field->side[i];
+        const float wander = 1.1f * hue[i] + .4f * field->side[i];
         hue[i] = wander / sqrtf(1 + wander * wander / 2.25f); // browns would turn red and green
     }
     for (size_t i = 0; i < n; i++) {
