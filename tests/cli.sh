@@ -395,6 +395,20 @@ done
 "$program" all.d -c all.conf >out 2>err && [ -s all/w_2.png ] && [ -s all/disc_1.png ] &&
     [ -s all/rest_1.png ] && [ ! -e all/rim_1.png ] && [ "$(grep 'warning:' err)" = "$(grep 'warning: all.conf:41: ' err)" ]
 result $? 'every key of a config is taken'
+# A layer's name says settings: more than --hold for all regions, less than a section for its own.
+mkdir named.d
+for i in 1 2; do
+    sed "s/'Character'/'Disc hold=2 carry=0.3'/" all.d/w_000$i.svg >named.d/w_000$i.svg
+done
+"$program" named.d -s 01 --list-regions >out 2>err && grep -q '^disc-a93311 ' out &&
+    "$program" named.d -s 01 --hold 1 -o 'named/%d.png' --paint 'named/{region}_%d.png' 2>err &&
+    [ -s named/disc-a93311_1.png ] && [ ! -e named/disc-a93311_2.png ]
+result $? "a layer's name says how it is painted"
+sed -i "s/hold=2/hold=0/" named.d/w_000?.svg
+printf '[region disc-*]\nhold = 1\n' >named.conf
+"$program" named.d -s 01 --dry-run 2>err; grep -q 'layer “Disc hold=0 carry=0.3”: hold: “0” is not' err &&
+    "$program" named.d -s 01 -c named.conf --dry-run 2>err
+result $? 'a mistake in it names the layer, and a section of the region wins'
 sed -n '/^\.Sh EXAMPLES/,/^\.Ed/p' "$fixtures/../man/fluidy-svg.conf.5.in" | grep -v '^\.' >example.conf
 cp plain_1.png paper.png
 "$program" all.d -c example.conf --dry-run >out 2>err &&

@@ -24,6 +24,20 @@ static void append_word(GString *name, const char *word)
     append_slug(name, word);
 }
 
+/** Appends a label without its settings, such as those of “hat style=gouache”. */
+static void append_label(GString *name, const char *label)
+{
+    g_auto(GStrv) words = g_strsplit_set(label, " \t", -1);
+    bool plain = false;
+    for (char **word = words; *word; word++)
+        if (**word && !strchr(*word, '=')) {
+            append_word(name, *word);
+            plain = true;
+        }
+    if (!plain)
+        append_word(name, label);
+}
+
 /** The number of outer labels that all groups share. */
 static guint shared_depth(const FlSurvey *survey, const GArray *groups)
 {
@@ -56,7 +70,7 @@ static char *make_name(const FlSurvey *survey, const FlRegionIdentity *group, gu
     g_auto(GStrv) labels = g_strsplit(fl_strings_get(&survey->strings, group->label), "\n", -1);
     const guint depth = g_strv_length(labels);
     if (depth > shared)
-        append_word(name, labels[depth - 1]);
+        append_label(name, labels[depth - 1]);
     else if (group->kind == FL_PAINT_FLAT)
         append_word(name, fl_colour_word(group->rgb));
     g_autofree char *hex =

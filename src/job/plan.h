@@ -95,10 +95,12 @@ bool fl_plan_find_output(FlPlan *plan, GError **error);
 bool fl_guard_pictures(const FlDrawing *drawing, const FlRenderOptions *options,
                        const char *pattern, GError **error);
 
-/** The settings of a region; those that its style gives come before all others. Arguments and
+/** The settings of a region: those that its style gives come before all others, those in the names
+ * of its layers override those for all regions. label: FlRegion.label or NULL. Other arguments and
  * errors as of fl_config_region_settings(). */
-bool fl_plan_region_settings(const FlConfig *config, int rule, const char *region, FlGiven given,
-                             FlRegionSettings *settings, GError **error);
+bool fl_plan_region_settings(const FlConfig *config, int rule, const char *region,
+                             const char *label, FlGiven given, FlRegionSettings *settings,
+                             GError **error);
 
 /** Lists the files that the options name, and the earlier frames. */
 void fl_plan_list_inputs(FlPlan *plan);

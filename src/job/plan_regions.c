@@ -102,18 +102,64 @@ static bool choose_key(FlPlan *plan, FlRegionPlan *painted, int k, GError **erro
            fl_region_settings_set(&painted->settings, "style", style, NULL, error);
 }
 
-bool fl_plan_region_settings(const FlConfig *config, int rule, const char *region, FlGiven given,
-                             FlRegionSettings *settings, GError **error)
+/* True if a setting is for this region alone. */
+static bool is_said(const FlConfig *config, int rule, const char *region, FlGiven given,
+                    const char *key)
 {
-    g_auto(FlOverrides) own = {0};
-    if (!fl_config_region_settings(config, rule, region, given, NULL, settings, error))
+    const FlOverrides *own = rule >= 0 ? &config->rules[rule].overrides : NULL;
+    bool said = false;
+    for (int k = 0; own && k < own->n; k++)
+        said = said || strcmp(own->override[k].key, key) == 0;
+    for (size_t k = 0; k < given.n; k++)
+        said = said || (g_strcmp0(given.setting[k].region, region) == 0 &&
+                        strcmp(given.setting[k].name, key) == 0);
+    return said;
+}
+
+/* The settings in the names of layers, such as “hat style=gouache”, of which inner ones override
+ * outer ones; those that are said for the region alone are left out. label: the layers, with /
+ * between; NULL: none. */
+static bool read_label(const FlConfig *config, int rule, const char *region, const char *label,
+                       FlGiven given, FlOverrides *settings, GError **error)
+{
+    g_auto(GStrv) words = g_strsplit_set(label ? label : "", " \t/", -1);
+    for (char **word = words; *word; word++) {
+        char *value = strchr(*word, '=');
+        if (!value)
+            continue;
+        *value++ = '\0';
+        if (!fl_option_find(FL_SCOPE_REGION, *word) || is_said(config, rule, region, given, *word))
+            continue;
+        if (strcmp(*word, "merge-with") == 0 || strcmp(*word, "passthrough") == 0)
+            return fl_fail(error, FL_ERROR_USAGE,
+                           "layer “%s”: %s decides which regions there are; say it in a config",
+                           label, *word);
+        if (fl_overrides_add(settings, *word, value, NULL, error))
+            continue;
+        g_prefix_error(error, "layer “%s”: ", label);
         return false;
+    }
+    return true;
+}
+
+bool fl_plan_region_settings(const FlConfig *config, int rule, const char *region,
+                             const char *label, FlGiven given, FlRegionSettings *settings,
+                             GError **error)
+{
+    g_auto(FlOverrides) of_label = {0}, of_style = {0};
+    if (!read_label(config, rule, region, label, given, &of_label, error) ||
+        !fl_config_region_settings(config, rule, region, given, NULL, settings, error))
+        return false;
+    fl_overrides_apply(&of_label, settings);
     if (settings->style)
-        fl_style_settings(settings->style, &own);
-    if (own.n == 0)
+        fl_style_settings(settings->style, &of_style);
+    if (of_style.n == 0)
         return true;
     fl_region_settings_clear(settings);
-    return fl_config_region_settings(config, rule, region, given, &own, settings, error);
+    if (!fl_config_region_settings(config, rule, region, given, &of_style, settings, error))
+        return false;
+    fl_overrides_apply(&of_label, settings);
+    return true;
 }
 
 /* Splits the region that was planned last into a painted region for each of its keyed styles. */
@@ -138,7 +184,7 @@ static bool add_styles(FlPlan *plan, int region, GError **error)
             break;
         painted->more = true;
         painted++;
-        if (!fl_plan_region_settings(plan->config, r->rule, r->name, given_of(plan),
+        if (!fl_plan_region_settings(plan->config, r->rule, r->name, r->label, given_of(plan),
                                      &painted->settings, error))
             return false;
         painted->region = region, painted->name = r->name;
@@ -156,7 +202,8 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
     FlRegionSettings *settings = &chosen->settings;
     const bool left_out = is_left_out(plan, r->name);
     const int rule = fl_config_rule(plan->config, r->rule, r->name);
-    if (!fl_plan_region_settings(plan->config, rule, r->name, given_of(plan), settings, error))
+    if (!fl_plan_region_settings(plan->config, rule, r->name, r->label, given_of(plan), settings,
+                                 error))
         return false;
     const bool painted = r->paintable && settings->passthrough != FL_PASSTHROUGH_YES;
     plan->half &= !painted || settings->params.half_size;

@@ -105,7 +105,8 @@ static bool configure(GivenRegion *given, GError **error)
     FlRegionPlan *plan = &given->plan;
     g_autoptr(FlConfig) none = fl_config_load(NULL, NULL, error);
     plan->name = region->name ? region->name : "region";
-    if (!none || !fl_plan_region_settings(none, -1, plan->name, settings, &plan->settings, error))
+    if (!none ||
+        !fl_plan_region_settings(none, -1, plan->name, NULL, settings, &plan->settings, error))
         return false;
     given->configured = true;
     return plan->settings.style || refuse(error, "‘settings’ have no \"style\"");
