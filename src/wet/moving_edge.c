@@ -252,16 +252,18 @@ static float half_way_over(const FlWetShape *shape, const FlEdgePoint *point)
     return 0.5f * way;
 }
 
-/** The share of its paint that the paper keeps: less of thin and fast strokes, none of shapes that
- * shrink without a motion that explains it, more of those that rested. */
-static void find_kept(const FlWetShape *shape, float speed_before, FlEdgePoint *point)
+/** The share of its paint that the paper keeps: less of thin and fast strokes, also where these
+ * turn round and are slow for a frame; none of shapes that shrink without a motion that explains
+ * it, more of those that rested. */
+static void find_kept(const FlWetShape *shape, float pace_before, FlEdgePoint *point)
 {
     const float px = shape->px, width = MAX(half_way_over(shape, point), 2 * px);
     const float moved = sqrtf(point->u * point->u + point->v * point->v);
-    const float speed = moved / shape->frames, shrunk = MAX(-point->speed, 0) * shape->frames;
-    const float quick = 1.5f * speed / width, contact = 1 / (1 + quick * quick);
-    const float rested = 0.8f + 0.4f * fl_bell(speed_before / px);
-    point->kept = fl_bell(speed / (2.2f * width)) * contact * rested *
+    const float shrunk = MAX(-point->speed, 0) * shape->frames;
+    point->pace = MAX(moved / shape->frames, pace_before * fl_fall(0.3f * shape->frames));
+    const float quick = 1.5f * point->pace / width, contact = 1 / (1 + quick * quick);
+    const float rested = 0.8f + 0.4f * fl_bell(pace_before / px);
+    point->kept = fl_bell(point->pace / (2.2f * width)) * contact * rested *
                   (1 - fl_ease(1.3f, 2, shrunk / (moved + 3 * px)));
 }
 
@@ -389,7 +391,7 @@ static void find_point(const FlWetShape *shape, const FlMovingEdge *before, bool
     find_ink(shape, point);
     const FlEdgePoint *was = point_before(shape, before, point);
     const float speed = was ? was->speed : 0;
-    find_kept(shape, speed, point);
+    find_kept(shape, was ? was->pace : 0, point);
     point->kept_before = was ? was->kept : point->kept;
     memcpy(point->ink_before, was ? was->ink : point->ink, sizeof point->ink);
     point->speed = 0.55f * point->speed + 0.45f * speed;
