@@ -17,21 +17,17 @@ static float noise(uint64_t key, size_t i)
 /* What is derived: the mean of by[i] * ink after a potential, and a little of the determinants. */
 typedef struct Problem {
     FlPotential potential;
-    float density[N * N], by[N * N], by_jacobian[N * N];
-    FlTransportMode mode;
-    bool periodic;
+    float by[N * N], by_jacobian[N * N];
 } Problem;
 
-static Problem *problem_new(FlTransportMode mode, bool periodic)
+static Problem *problem_new(void)
 {
     Problem *p = g_new0(Problem, 1);
-    p->mode = mode, p->periodic = periodic;
     g_assert_true(fl_potential_init(&p->potential, N, N, NULL));
     for (int l = 0; l < FL_POTENTIAL_GRIDS; l++)
         for (size_t i = 0; i < fl_potential_nodes(&p->potential, l); i++)
             p->potential.grid[l][i] = 0.6f * noise((uint64_t)l, i) * (float)(1 << l);
     for (size_t i = 0; i < (size_t)N * N; i++) {
-        p->density[i] = 1 + 0.4f * sinf((float)(i % N) * 0.26f) * cosf((float)(i / N) * 0.26f);
         p->by[i] = noise(10, i);
         p->by_jacobian[i] = noise(11, i);
     }
@@ -49,11 +45,11 @@ static double value_of(const Problem *p)
     g_auto(FlFlowMap) map = {0};
     g_autofree float *sum = g_new(float, N *N), *velocity = g_new(float, 2 * N * N);
     g_autofree float *carried = g_new(float, N *N);
-    g_assert_true(fl_flow_map_init(&map, N, N, p->periodic, NULL));
+    g_assert_true(fl_flow_map_init(&map, N, N, true, NULL));
     fl_potential_sum(&p->potential, sum);
-    fl_velocity(&map, sum, p->mode, velocity);
+    fl_velocity(&map, sum, velocity);
     fl_flow_map_run(&map, velocity);
-    fl_flow_map_carry(&map, p->density, carried);
+    fl_flow_map_carry(&map, NULL, carried);
     double value = 0;
     for (size_t i = 0; i < (size_t)N * N; i++)
         value += (double)p->by[i] * carried[i] + (double)p->by_jacobian[i] * map.jacobian[i];
@@ -64,22 +60,22 @@ static void derivative_of(const Problem *p, FlPotential *by_node)
 {
     g_auto(FlFlowMap) map = {0};
     g_autofree float *sum = g_new(float, N *N), *velocity = g_new(float, 2 * N * N);
-    g_assert_true(fl_flow_map_init(&map, N, N, p->periodic, NULL));
+    g_assert_true(fl_flow_map_init(&map, N, N, true, NULL));
     fl_potential_sum(&p->potential, sum);
-    fl_velocity(&map, sum, p->mode, velocity);
+    fl_velocity(&map, sum, velocity);
     fl_flow_map_run(&map, velocity);
-    g_assert_true(fl_flow_map_adjoint(&map, p->density, p->by, p->by_jacobian, velocity, NULL));
-    fl_velocity_adjoint(&map, velocity, p->mode, sum);
+    g_assert_true(fl_flow_map_adjoint(&map, p->by, p->by_jacobian, velocity, NULL));
+    fl_velocity_adjoint(&map, velocity, sum);
     g_assert_true(fl_potential_init(by_node, N, N, NULL));
     fl_potential_adjoint(sum, by_node);
 }
 
 /* The derivative along a direction of all nodes against central differences. Bilinear samples have
  * kinks, which a small step along many nodes averages. */
-static void compare_derivatives(FlTransportMode mode, bool periodic)
+static void adjoints_agree_with_differences(void)
 {
     const float step = 0.1f; // length in all nodes
-    Problem *p = problem_new(mode, periodic);
+    Problem *p = problem_new();
     g_auto(FlPotential) by = {0};
     derivative_of(p, &by);
     for (int l = 0; l < FL_POTENTIAL_GRIDS; l++) {
@@ -102,14 +98,6 @@ static void compare_derivatives(FlTransportMode mode, bool periodic)
         g_assert_cmpfloat(fabs(length - expected), <, 0.01 * fabs(expected) + 0.006);
     }
     problem_free(p);
-}
-
-static void adjoints_agree_with_differences(void)
-{
-    for (int periodic = 0; periodic < 2; periodic++) {
-        compare_derivatives(FL_TRANSPORT_GATHER, periodic);
-        compare_derivatives(FL_TRANSPORT_STIR, periodic);
-    }
 }
 
 /* A picture of stripes 12 px apart, mean 1. */
@@ -162,7 +150,7 @@ static void a_solution_looks_like_its_picture(void)
         .width = n, .height = n, .style = sliced, .pace = 1, .key = 1};
     g_assert_true(fl_transport_solve(&problem, 1, &potential, NULL, NULL, NULL));
     fl_potential_sum(&potential, sum);
-    fl_velocity(&map, sum, FL_TRANSPORT_GATHER, velocity);
+    fl_velocity(&map, sum, velocity);
     fl_flow_map_run(&map, velocity);
     fl_flow_map_carry(&map, NULL, carried);
     for (int i = 0; i < n * n; i++)

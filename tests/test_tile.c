@@ -28,8 +28,7 @@ static void bad_style_folders_are_named(void)
     expect_refusal(folder, "[transport]\n", "no such file");
     g_assert_true(fl_tile_save(potential, 64, folder, NULL));
     expect_refusal(folder, "[transport]\nsize = 128\n", "64x64 pixels: expected 128x128");
-    expect_refusal(folder, "[transport]\nmotion = swirl\n",
-                   "style.ini:2: motion = swirl: expected");
+    expect_refusal(folder, "[transport]\nmatch = swirl\n", "style.ini:2: match = swirl: expected");
     expect_refusal(folder, "[transport]\ntapir = 3\n", "style.ini:2: unknown key");
     g_assert_true(g_file_set_contents(png, "no picture", -1, NULL));
     expect_refusal(folder, "[transport]\nsize = 64\n", "transport.png");

@@ -89,10 +89,8 @@ static void add_velocity(const FlCarriedInk *ink, const FlMaterial *material, in
         ink->input.tile, ((float)(x + rect.x) + material->shift[2 * p] + ink->origin[0]) / scale,
         ((float)(y + rect.y) + material->shift[2 * p + 1] + ink->origin[1]) / scale, g);
     fl_material_inverse(material, x, y, inverse);
-    const bool stir = ink->input.tile->style.mode == FL_TRANSPORT_STIR;
-    const float along = stir ? g[1] : g[0], down = stir ? -g[0] : g[1];
-    velocity[0] += share * scale * (inverse[0][0] * along + inverse[0][1] * down);
-    velocity[1] += share * scale * (inverse[1][0] * along + inverse[1][1] * down);
+    velocity[0] += share * scale * (inverse[0][0] * g[0] + inverse[0][1] * g[1]);
+    velocity[1] += share * scale * (inverse[1][0] * g[0] + inverse[1][1] * g[1]);
 }
 
 /* Ink stays in the region: the nearer to the contour, the less it moves. */
@@ -150,22 +148,6 @@ static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, const
 /* ---- the ink -----------------------------------------------------------------------------------
  */
 
-/* Rings along the contour, from which the taper keeps a distance. */
-static float *rings(const FlCarriedInk *ink, const FlGuides *guides, FlRect rect, GError **error)
-{
-    float *density = fl_alloc(fl_rect_pixels(rect), sizeof *density, "a density", error);
-    const float period = ink->input.tile->style.ring_px * ink->input.scale;
-    for (int y = 0; density && y < rect.height; y++)
-        for (int x = 0; x < rect.width; x++) {
-            const float depth =
-                guides
-                    ->distance[(size_t)(y + rect.y) * (size_t)guides->width + (size_t)(x + rect.x)];
-            density[(size_t)y * (size_t)rect.width + (size_t)x] =
-                depth > 0 ? fl_ring_density(depth / period + 0.25f, period) : 1;
-        }
-    return density;
-}
-
 /* The factor that makes the mean amount over the mask 1. Rows are summed
  * in order. */
 static float to_mean_one(const FlGuides *guides, FlRect rect, const float *carried)
@@ -205,12 +187,9 @@ static bool move_ink(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, flo
 {
     g_auto(FlFlowMap) map = {0};
     g_autofree float *carried = fl_alloc(fl_rect_pixels(rect), sizeof *carried, "a density", error);
-    g_autofree float *density = NULL;
-    const bool ringed = ink->input.tile->style.density == FL_DENSITY_RINGS;
-    if (!carried || !find_map(ink, guides, rect, &map, error) ||
-        (ringed && !(density = rings(ink, guides, rect, error))))
+    if (!carried || !find_map(ink, guides, rect, &map, error))
         return false;
-    fl_flow_map_carry(&map, density, carried);
+    fl_flow_map_carry(&map, NULL, carried);
     const float factor = to_mean_one(guides, rect, carried);
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++)

@@ -70,30 +70,24 @@ static inline void scatter_gradient(const FlFlowMap *map, float *f, int channels
     f[channels * at(map, x, up)] -= by_dy * 0.5f;
 }
 
-void fl_velocity(const FlFlowMap *map, const float *potential, FlTransportMode mode,
-                 float *velocity)
+void fl_velocity(const FlFlowMap *map, const float *potential, float *velocity)
 {
 #pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(at(map, 0, map->height)))
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++) {
             const size_t p = at(map, x, y);
-            float dx, dy;
-            gradient(map, potential, 1, x, y, &dx, &dy);
-            velocity[2 * p] = (mode == FL_TRANSPORT_GATHER ? dx : dy);
-            velocity[2 * p + 1] = (mode == FL_TRANSPORT_GATHER ? dy : -dx);
+            gradient(map, potential, 1, x, y, &velocity[2 * p], &velocity[2 * p + 1]);
         }
 }
 
-void fl_velocity_adjoint(const FlFlowMap *map, const float *by_velocity, FlTransportMode mode,
-                         float *by_potential)
+void fl_velocity_adjoint(const FlFlowMap *map, const float *by_velocity, float *by_potential)
 {
     memset(by_potential, 0, sizeof(float) * map->width * (size_t)map->height);
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++) {
             const size_t p = at(map, x, y);
-            const float vx = by_velocity[2 * p], vy = by_velocity[2 * p + 1];
-            scatter_gradient(map, by_potential, 1, x, y, mode == FL_TRANSPORT_GATHER ? vx : -vy,
-                             mode == FL_TRANSPORT_GATHER ? vy : vx);
+            scatter_gradient(map, by_potential, 1, x, y, by_velocity[2 * p],
+                             by_velocity[2 * p + 1]);
         }
 }
 
@@ -101,15 +95,11 @@ void fl_velocity_adjoint(const FlFlowMap *map, const float *by_velocity, FlTrans
 typedef struct Cell {
     size_t p[4]; // upper left, upper right, lower left, lower right
     float fx, fy;
-    bool held_x, held_y; // at the rim: it would lie beyond, and moves nowhere
 } Cell;
 
 static inline Cell cell_at(const FlFlowMap *map, float x, float y)
 {
-    bool held_x = false, held_y = false;
     if (!map->periodic) {
-        held_x = x < 0 || x > (float)(map->width - 1);
-        held_y = y < 0 || y > (float)(map->height - 1);
         x = fminf(fmaxf(x, 0), (float)(map->width - 1));
         y = fminf(fmaxf(y, 0), (float)(map->height - 1));
     }
@@ -121,9 +111,7 @@ static inline Cell cell_at(const FlFlowMap *map, float x, float y)
     return (Cell){
         {at(map, left, up), at(map, right, up), at(map, left, down), at(map, right, down)},
         x - x0,
-        y - y0,
-        held_x,
-        held_y};
+        y - y0};
 }
 
 static inline float sample(const Cell *cell, const float *f, int channels)
@@ -141,8 +129,8 @@ static inline void sample_gradient(const Cell *cell, const float *f, int channel
 {
     const float a = f[channels * cell->p[0]], b = f[channels * cell->p[1]];
     const float c = f[channels * cell->p[2]], d = f[channels * cell->p[3]];
-    *dx = cell->held_x ? 0 : (1 - cell->fy) * (b - a) + cell->fy * (d - c);
-    *dy = cell->held_y ? 0 : (1 - cell->fx) * (c - a) + cell->fx * (d - b);
+    *dx = (1 - cell->fy) * (b - a) + cell->fy * (d - c);
+    *dy = (1 - cell->fx) * (c - a) + cell->fx * (d - b);
 }
 
 static inline void scatter_sample(const Cell *cell, float *f, int channels, float value)
@@ -206,24 +194,17 @@ void fl_flow_map_carry(const FlFlowMap *map, const float *density, float *carrie
         }
 }
 
-/* From the derivatives by the carried density and the determinant those by the whole map. */
-static void by_map(const FlFlowMap *map, const float *density, const float *by_carried,
-                   const float *by_jacobian, float *by_u)
+/* From the derivatives by the carried density, of a density of 1, and the determinant those by the
+ * whole map. */
+static void by_map(const FlFlowMap *map, const float *by_carried, const float *by_jacobian,
+                   float *by_u)
 {
     const float *u = map->u[FL_SQUARINGS];
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++) {
             const size_t p = at(map, x, y);
-            float xx, xy, yx, yy, from = 1;
-            if (density) {
-                const Cell cell = cell_of(map, u, x, y);
-                float dx, dy;
-                sample_gradient(&cell, density, 1, &dx, &dy);
-                from = sample(&cell, density, 1);
-                by_u[2 * p] += by_carried[p] * map->jacobian[p] * dx;
-                by_u[2 * p + 1] += by_carried[p] * map->jacobian[p] * dy;
-            }
-            const float j = by_carried[p] * from + (by_jacobian ? by_jacobian[p] : 0);
+            float xx, xy, yx, yy;
+            const float j = by_carried[p] + (by_jacobian ? by_jacobian[p] : 0);
             if (j == 0)
                 continue;
             gradient(map, u, 2, x, y, &xx, &xy);
@@ -255,15 +236,15 @@ static void square_adjoint(const FlFlowMap *map, const float *u, const float *by
         }
 }
 
-bool fl_flow_map_adjoint(const FlFlowMap *map, const float *density, const float *by_carried,
-                         const float *by_jacobian, float *by_velocity, GError **error)
+bool fl_flow_map_adjoint(const FlFlowMap *map, const float *by_carried, const float *by_jacobian,
+                         float *by_velocity, GError **error)
 {
     const size_t n = (size_t)map->width * map->height;
     g_autofree float *by_twice = fl_alloc(2 * n, sizeof(float), "a derivative", error);
     if (!by_twice)
         return false;
     memset(by_velocity, 0, 2 * n * sizeof *by_velocity);
-    by_map(map, density, by_carried, by_jacobian, by_velocity);
+    by_map(map, by_carried, by_jacobian, by_velocity);
     for (int k = FL_SQUARINGS - 1; k >= 0; k--) {
         memcpy(by_twice, by_velocity, 2 * n * sizeof *by_twice);
         square_adjoint(map, map->u[k], by_twice, by_velocity);

@@ -7,12 +7,6 @@
 
 #define FL_SQUARINGS 3 // of the velocity's flow; enough for 16 px
 
-/** The direction in which a potential moves ink. */
-typedef enum FlTransportMode {
-    FL_TRANSPORT_GATHER, // along its gradient: ink pools
-    FL_TRANSPORT_STIR,   // along its contours: ink keeps its density, rings are stirred
-} FlTransportMode;
-
 /**
  * A velocity's flow, run backwards for unit time by scaling and squaring, on a torus of width *
  * height px, or in a rectangle whose rim is repeated outside.
@@ -30,12 +24,10 @@ void fl_flow_map_clear(FlFlowMap *map);
 /**
  * The velocity of a potential, px: width * height * 2.
  */
-void fl_velocity(const FlFlowMap *map, const float *potential, FlTransportMode mode,
-                 float *velocity);
+void fl_velocity(const FlFlowMap *map, const float *potential, float *velocity);
 
 /** The adjoint: writes the derivative by the potential. */
-void fl_velocity_adjoint(const FlFlowMap *map, const float *by_velocity, FlTransportMode mode,
-                         float *by_potential);
+void fl_velocity_adjoint(const FlFlowMap *map, const float *by_velocity, float *by_potential);
 
 /** Fills u and jacobian. */
 void fl_flow_map_run(FlFlowMap *map, const float *velocity);
@@ -46,10 +38,10 @@ void fl_flow_map_run(FlFlowMap *map, const float *velocity);
  */
 void fl_flow_map_carry(const FlFlowMap *map, const float *density, float *carried);
 
-/** The derivative by the velocity from those by the carried density and, in addition, by the
- * determinant (may be NULL). Errors: FL_ERROR_NO_MEMORY. */
-bool fl_flow_map_adjoint(const FlFlowMap *map, const float *density, const float *by_carried,
-                         const float *by_jacobian, float *by_velocity, GError **error);
+/** The derivative on a torus by the velocity from those by the carried density of 1 and, in
+ * addition, by the determinant (may be NULL). Errors: FL_ERROR_NO_MEMORY. */
+bool fl_flow_map_adjoint(const FlFlowMap *map, const float *by_carried, const float *by_jacobian,
+                         float *by_velocity, GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFlowMap, fl_flow_map_clear)
 

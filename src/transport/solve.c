@@ -10,8 +10,7 @@
 #define DIRECTIONS 24
 
 // Weights of what is held small beside the loss: how the velocity changes, its size, folds.
-#define W_CHANGE_GATHER 2e-3f
-#define W_CHANGE_STIR 4e-2f
+#define W_CHANGE 2e-3f
 #define W_SIZE 2e-5f
 #define W_FOLD 1.0f
 #define FOLD_FROM 0.05f // determinants below this
@@ -38,13 +37,6 @@ static const Stage picture_stages[] = {
     {60, 0, LEVELS(2, 3), 0.25f, false},
     {60, 0, LEVELS(1, 3), 0.15f, false},
     {140, 0, LEVELS(0, 3), 0.10f, true},
-    {0},
-};
-
-static const Stage stir_stages[] = {
-    {30, LEVELS(2, 4), LEVELS(3, 3), 0.25f, false},
-    {40, LEVELS(2, 3), LEVELS(3, 3), 0.25f, false},
-    {60, LEVELS(1, 3), LEVELS(2, 3), 0.25f, true},
     {0},
 };
 
@@ -132,9 +124,8 @@ static void add_noise(FlPotential *potential, uint64_t key)
 static void add_smoothness(Solver *solver)
 {
     const int w = solver->problem->width, h = solver->problem->height;
-    const bool stir = solver->problem->mode == FL_TRANSPORT_STIR;
     const float size = 2 * W_SIZE / (float)(w * h);
-    const float change = 2 * (stir ? W_CHANGE_STIR : W_CHANGE_GATHER) / (float)(w * h);
+    const float change = 2 * W_CHANGE / (float)(w * h);
     const float *v = solver->velocity;
     float *by = solver->by_velocity;
     for (int y = 0; y < h; y++)
@@ -189,17 +180,17 @@ static float derive(Solver *solver, unsigned levels, uint64_t key, GError **erro
 {
     const FlTransportProblem *problem = solver->problem;
     fl_potential_sum(solver->potential, solver->sum);
-    fl_velocity(&solver->map, solver->sum, problem->mode, solver->velocity);
+    fl_velocity(&solver->map, solver->sum, solver->velocity);
     fl_flow_map_run(&solver->map, solver->velocity);
-    fl_flow_map_carry(&solver->map, problem->density, solver->carried);
+    fl_flow_map_carry(&solver->map, NULL, solver->carried);
     const float loss =
         problem->picture ? picture_loss(solver) : patches_loss(solver, levels, key, error);
     fold_derivative(solver);
-    if (loss < 0 || !fl_flow_map_adjoint(&solver->map, problem->density, solver->by_carried,
-                                         solver->by_jacobian, solver->by_velocity, error))
+    if (loss < 0 || !fl_flow_map_adjoint(&solver->map, solver->by_carried, solver->by_jacobian,
+                                         solver->by_velocity, error))
         return -1;
     add_smoothness(solver);
-    fl_velocity_adjoint(&solver->map, solver->by_velocity, problem->mode, solver->sum);
+    fl_velocity_adjoint(&solver->map, solver->by_velocity, solver->sum);
     fl_potential_adjoint(solver->sum, &solver->by_node);
     return loss;
 }
@@ -262,9 +253,7 @@ bool fl_transport_solve(const FlTransportProblem *problem, float effort, FlPoten
     if (!solver_init(&solver, problem, potential, error))
         return false;
     add_noise(potential, problem->key);
-    const Stage *stages = problem->picture                     ? picture_stages
-                          : problem->mode == FL_TRANSPORT_STIR ? stir_stages
-                                                               : gather_stages;
+    const Stage *stages = problem->picture ? picture_stages : gather_stages;
     for (const Stage *s = stages; s->iterations; s++)
         report.total += (int)((float)s->iterations * effort);
     for (const Stage *s = stages; s->iterations; s++)

@@ -13,9 +13,7 @@ typedef struct FlTransportProblem {
     const FlSliced *style;
     const float
         *picture; // ink is to look like this, width * height of mean 1; NULL: like the style
-    const float *density; // before the transport, mean 1; NULL: 1 everywhere
-    FlTransportMode mode;
-    float pace; // factor on the steps: 1 draws clean bands, 3 reaches the wide features of a wash
+    float pace;   // factor on the steps: 1 draws clean bands, 3 reaches the wide features of a wash
     uint64_t key;
 } FlTransportProblem;
 

@@ -44,18 +44,6 @@ static float *style_ink(const FlStyle *style, GError **error)
     return normalise(density, n, style->path, error) ? g_steal_pointer(&density) : NULL;
 }
 
-/* Stripes of the rings' period that fit the torus. */
-static float *stripes(const FlTransportStyle *style, GError **error)
-{
-    const int n = style->size;
-    float *density = fl_alloc((size_t)n * (size_t)n, sizeof *density, "a density", error);
-    const float period = (float)n / fmaxf(floorf((float)n / style->ring_px + 0.5f), 1);
-    for (int y = 0; density && y < n; y++)
-        for (int x = 0; x < n; x++)
-            density[(size_t)y * (size_t)n + (size_t)x] = fl_ring_density((float)y / period, period);
-    return density;
-}
-
 /* The potential minus its mean, since only its gradient counts. */
 static void keep_potential(const FlPotential *potential, size_t n, float *sum)
 {
@@ -84,21 +72,18 @@ static bool pixels_of(const FlStyle *style, const FlTransportStyle *wanted, cons
 static bool solve(const FlStyle *style, const FlTransportStyle *wanted,
                   FlTransportProgress progress, void *data, float *sum, GError **error)
 {
-    g_autofree float *density = style_ink(style, error), *ink = NULL;
+    g_autofree float *density = style_ink(style, error);
     g_autoptr(FlSliced) sliced =
         density ? fl_sliced_new(density, style->width, style->height, error) : NULL;
     g_auto(FlPotential) potential = {0};
     FlTransportProblem problem = {.width = wanted->size,
                                   .height = wanted->size,
                                   .style = sliced,
-                                  .mode = wanted->mode,
                                   .pace = wanted->pace,
                                   .key = 1};
     if (!sliced || !pixels_of(style, wanted, density, &problem.picture, error) ||
-        (wanted->density == FL_DENSITY_RINGS && !(ink = stripes(wanted, error))) ||
         !fl_potential_init(&potential, wanted->size, wanted->size, error))
         return false;
-    problem.density = ink;
     if (!fl_transport_solve(&problem, wanted->effort, &potential, progress, data, error))
         return false;
     keep_potential(&potential, (size_t)wanted->size * (size_t)wanted->size, sum);

@@ -33,11 +33,8 @@ bool fl_tile_exists(const char *folder)
  */
 
 static const FlTableKey keys[] = {
-    {"motion", FL_KEY_OF(WORD, FlTransportStyle, mode), .words = "gather|stir"},
-    {"density", FL_KEY_OF(WORD, FlTransportStyle, density), .words = "flat|rings"},
     {"size", FL_KEY_OF(INTEGER, FlTransportStyle, size), 64, 1024},
     {"match", FL_KEY_OF(WORD, FlTransportStyle, match), .words = "patches|picture"},
-    {"ring", FL_KEY_OF(NUMBER, FlTransportStyle, ring_px), 2, 1000},
     {"taper", FL_KEY_OF(NUMBER, FlTransportStyle, taper_px), 1, 1000},
     {"pace", FL_KEY_OF(NUMBER, FlTransportStyle, pace), 0.1, 10},
     {"effort", FL_KEY_OF(NUMBER, FlTransportStyle, effort), 0.1, 100},
@@ -47,20 +44,12 @@ bool fl_transport_style_read(FlTransportStyle *style, const char *folder, GError
 {
     static const FlKeyTable table = {keys, G_N_ELEMENTS(keys)};
     g_autofree char *path = g_build_filename(folder, "style.ini", NULL);
-    *style = (FlTransportStyle){.size = 256, .ring_px = 16, .taper_px = 6, .pace = 1, .effort = 1};
+    *style = (FlTransportStyle){.size = 256, .taper_px = 6, .pace = 1, .effort = 1};
     FlKeySection section = {"transport", &table, style, FL_ERROR_STYLE};
     if (g_file_test(path, G_FILE_TEST_EXISTS) && !fl_key_sections_read(path, &section, 1, error))
         return false;
     style->size -= style->size % FL_POTENTIAL_COARSEST;
     return true;
-}
-
-float fl_ring_density(float periods, float period_px)
-{
-    const float edge = fminf(1.2f / period_px, 0.25f);               // of a period
-    const float t = fabsf(periods - floorf(periods) - 0.5f) - 0.25f; // below 0: between rings
-    const float u = fminf(fmaxf(t / edge, -1), 1);
-    return 1 + u * (1.5f - 0.5f * u * u) * 0.95f;
 }
 
 /* ---- the tile ----------------------------------------------------------------------------------

@@ -5,12 +5,6 @@
 #include "style/style_folder.h"
 #include "transport/solve.h"
 
-/** The ink that is moved. */
-typedef enum FlTransportDensity {
-    FL_DENSITY_FLAT,  // as much everywhere
-    FL_DENSITY_RINGS, // in rings along the contour
-} FlTransportDensity;
-
 /** The features that the solver compares. */
 typedef enum FlTransportMatch {
     FL_MATCH_PATCHES, // the patches of the picture: a pattern of the same kind
@@ -19,11 +13,8 @@ typedef enum FlTransportMatch {
 
 /** The section [transport] of style.ini: fluidy-style(5). */
 typedef struct FlTransportStyle {
-    FlTransportMode mode;
-    FlTransportDensity density;
     FlTransportMatch match;
     int size;       // of the tile, px, a multiple of 16
-    float ring_px;  // period of the rings
     float taper_px; // ink nearer to the contour moves less
     float pace;     // of the solution: FlTransportProblem
     float effort;   // factor on its iterations
@@ -46,9 +37,6 @@ FlTile *fl_tile_load(const char *folder, float scale, GError **error);
 
 /** Writes the potential as DIR/transport.png: size * size px². FL_ERROR_OUTPUT. */
 bool fl_tile_save(const float *potential, int size, const char *folder, GError **error);
-
-/** Rings: the density, mean 1, at a distance of `periods` from the contour; a period is in px. */
-float fl_ring_density(float periods, float period_px);
 
 /** The potential's gradient at a place in px of the tile, which repeats: px. */
 void fl_tile_gradient(const FlTile *tile, float x, float y, float gradient[2]);
