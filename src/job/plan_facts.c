@@ -112,8 +112,6 @@ static void add_painted(FlFacts *facts, const FlPlan *plan)
     for (int p = 0; p < shapes->n_painted; p++) {
         const FlRegionPlan *painted = &shapes->painted[p];
         fl_facts_add_options(facts, FL_SCOPE_REGION, &painted->settings, painted->name);
-        if (painted->styles)
-            fl_facts_add(facts, painted->name, painted->styles->text);
         if (painted->flow_files)
             add_pattern(facts, &plan->shapes, plan->inputs, painted->flow_files, painted->name);
         if (painted->paint_files)
@@ -192,7 +190,6 @@ static void add_method(FlFacts *facts, const FlShapes *shapes, const FlRegionPla
     fl_facts_add_number(facts, "the number of frames", shapes->n_frames);
     fl_facts_add_number(facts, "the width of the paint", shapes->width);
     fl_facts_add_number(facts, "the height of the paint", shapes->height);
-    fl_facts_add_number(facts, "whether it is a loop", painted->loops);
 }
 
 /* Adds the numbers of frames; without a drawing they count from 1 in every render. */
