@@ -135,6 +135,10 @@ static void files_override_those_that_they_include(void)
     g_autofree char *itself = write_config("[project]\ninclude = shot.conf");
     g_assert_null(fl_config_load(itself, NULL, &error));
     g_assert_nonnull(strstr(error->message, "include each other"));
+    g_clear_error(&error);
+    g_autofree char *endless = write_config("[project]\ninclude = /dev/zero");
+    g_assert_null(fl_config_load(endless, NULL, &error));
+    g_assert_true(g_str_has_prefix(error->message, "/dev/zero: "));
 }
 
 static void a_file_that_cannot_be_read_is_named(void)

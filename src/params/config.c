@@ -271,7 +271,8 @@ static bool read_entry(void *data, const char *key, const char *value, int line,
 static bool read_files(FlConfig *config, const FlRenderOptions *caller, char **paths,
                        const char *folder, int depth, GError **error);
 
-/* text: of the file, which is then not read; NULL: it is read. */
+/* text: of the file, which is then not read; NULL: it is read. An included file is a regular one.
+ */
 static bool read_file(FlConfig *config, const FlRenderOptions *caller, const char *path,
                       const char *text, int depth, GError **error)
 {
@@ -283,7 +284,8 @@ static bool read_file(FlConfig *config, const FlRenderOptions *caller, const cha
         .sections = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL),
     };
     const FlFileWait wait = {caller ? caller->stopped : NULL, caller ? caller->data : NULL};
-    const FlKeyReader calls = {read_section, read_entry, &reader, FL_ERROR_USAGE, &wait, text};
+    const FlKeyReader calls = {
+        read_section, read_entry, &reader, FL_ERROR_USAGE, depth > 0 ? NULL : &wait, text};
     if (depth > MOST_DEEP)
         return fl_fail(error, FL_ERROR_USAGE,
                        "%s: more than %d files include each other; it may include itself", path,
