@@ -54,8 +54,8 @@ char *fl_config_edit_map(const char *text, FlConfigValue map, void *data)
 /* A wanted key, and its place in the text. */
 typedef struct Wanted {
     const char *section, *key;
-    const char *now; // NULL: as it is; "": removed
-    char *was;       // NULL: not found
+    const char *now; // "": removed
+    bool found;
 } Wanted;
 
 static char *replace(const char *section, const char *key, const char *value, void *data)
@@ -63,9 +63,8 @@ static char *replace(const char *section, const char *key, const char *value, vo
     Wanted *wanted = data;
     if (strcmp(section, wanted->section) != 0 || strcmp(key, wanted->key) != 0)
         return g_strdup(value);
-    g_free(wanted->was);
-    wanted->was = g_strdup(value);
-    return !wanted->now ? g_strdup(value) : *wanted->now ? g_strdup(wanted->now) : NULL;
+    wanted->found = true;
+    return *wanted->now ? g_strdup(wanted->now) : NULL;
 }
 
 /* Behind the line of the section, or behind a new one at the end. */
@@ -93,15 +92,7 @@ static char *add_entry(const char *text, const Wanted *wanted)
 
 char *fl_config_edit_set(const char *text, const char *section, const char *key, const char *value)
 {
-    Wanted wanted = {section, key, value, NULL};
+    Wanted wanted = {section, key, value, false};
     g_autofree char *made = fl_config_edit_map(text, replace, &wanted);
-    g_autofree char *was = wanted.was;
-    return was || !*value ? g_steal_pointer(&made) : add_entry(made, &wanted);
-}
-
-char *fl_config_edit_get(const char *text, const char *section, const char *key)
-{
-    Wanted wanted = {section, key, NULL, NULL};
-    g_free(fl_config_edit_map(text, replace, &wanted));
-    return wanted.was;
+    return wanted.found || !*value ? g_steal_pointer(&made) : add_entry(made, &wanted);
 }

@@ -19,7 +19,4 @@ char *fl_config_edit_map(const char *text, FlConfigValue map, void *data);
  */
 char *fl_config_edit_set(const char *text, const char *section, const char *key, const char *value);
 
-/** Returns: the value, to be freed; NULL: it is not set. */
-char *fl_config_edit_get(const char *text, const char *section, const char *key);
-
 #endif
