@@ -61,6 +61,9 @@ paint dry "${ink[@]}" --fluid none && paint smoke -j 1 "${smoke[@]}" && ! same s
     paint smoke_many -j 4 "${smoke[@]}" && same smoke_many smoke &&
     FLUIDY_CPU_MASK=0 paint smoke_plain "${smoke[@]}" && same smoke_plain smoke
 result $? 'a fluid flows alike on any number of threads'
+paint puffs "${smoke[@]}" --hold 2 --paint "puffs_paint/$layers" && ! same puffs smoke &&
+    paint puffs_merged "${smoke[@]}" --hold 2 --merge --paint "puffs_paint/$layers" && same puffs_merged puffs
+result $? 'and where frames are held and merged'
 paint said "${ink[@]}" && same said smoke
 result $? 'and a style may ask for it'
 unset film
