@@ -49,31 +49,26 @@ static inline float bloom_at(const Slow slow)
     const float away = slow[FL_WASH_BLOOM], found = slow[FL_WASH_BLOOMS];
     if (away > 12 || found <= 0)
         return 0;
-    return away > 0 ? .40f * found * fl_decay(.7f * away)
-                    : found * (.40f * fl_decay(-away / 5) - .50f * fl_smooth(-away / 20));
+    return away > 0 ? .30f * found * fl_decay(.5f * away)
+                    : found * (.30f * fl_decay(-away / 7) - .40f * fl_smooth(-away / 24));
 }
 
 /* The ln of the factor on the amount by a wash of strength 1, and the balance of the pigments, at a
- * pixel. Lines meet and never cross: passes end at drying lines. */
+ * pixel. Every edge parts two tones, passes as well as what dried first from what dried last; it is
+ * crisp where it is found and wide where it is lost, and never ends amid one tone. */
 static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
 {
     const FlWashStyle *style = &brush->wash->style;
     const float pass = floorf(slow[FL_WASH_PASS]), part = slow[FL_WASH_PASS] - pass;
     const int k = (int)pass & (LOADS - 1);
-    const float crisp = slow[FL_WASH_CRISP], width = .5f - .455f * crisp;
+    const float width = .5f - .455f * slow[FL_WASH_CRISP];
     const float next = fl_smooth((part - 1 + width) / width);
     const float load = brush->load[k] + (brush->load[k + 1] - brush->load[k]) * next;
-    const float ridge = crisp * fl_decay((1 - part) * brush->wash->brush_px / 7) * .7f;
-    const float tide = tide_at(slow), free = 1 - fl_smooth(2.2f * tide);
-    const float dry = MAX(-slow[FL_WASH_TIDE], 0); // px from the line, on the side that is lighter
+    const float tide = tide_at(slow), lost_px = 3 + 60 * (1 - slow[FL_WASH_TIDES]);
+    const float wet = slow[FL_WASH_LINES] * (fl_smooth(.5f + slow[FL_WASH_TIDE] / lost_px) - .5f);
     *hue = slow[FL_WASH_HUE] + slow[FL_WASH_LINES] * .25f * load + .3f * tide;
-    return slow[FL_WASH_TONE] +
-           1.4f * style->passes * slow[FL_WASH_LINES] *
-               (.2f * load * (.5f + .5f * free) + .2f * ridge * free) +
-           1.2f * style->tide *
-               (.34f * tide -
-                .22f * slow[FL_WASH_TIDES] * fl_smooth(dry / 3) * fl_decay(dry / 60)) +
-           style->blooms * bloom_at(slow);
+    return slow[FL_WASH_TONE] + .25f * style->passes * slow[FL_WASH_LINES] * load +
+           style->tide * (.38f * tide + .22f * wet) + style->blooms * bloom_at(slow);
 }
 
 void fl_wash_find_tones(const FlWash *wash, float *tones, float *hues)

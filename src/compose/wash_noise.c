@@ -84,7 +84,7 @@ static void find_tide(const FlWash *wash, const Places *at, float *tide)
     noise_at(fl_key(wash->key, KEY_TIDE), at, wide, .25f, 1, 1, tide);
     noise_at(fl_key(wash->key, KEY_TIDE + 100), at, fine, 0, 2, .6f, crinkle);
     for (int i = 0; i < at->n; i++)
-        tide[i] = (tide[i] + .055f * crinkle[i] - .18f) / .011f;
+        tide[i] = (tide[i] + .055f * crinkle[i]) / .011f;
 }
 
 #define FEATHER_PX 9 // width of the feathers in which paint runs back from a drying line
@@ -137,7 +137,7 @@ static void find_blooms(const FlWash *wash, const Places *at, Values values)
         const int32_t cx = (int32_t)floorf(at->x[i] / BLOOM_CELL);
         const int32_t cy = (int32_t)floorf(at->y[i] / BLOOM_CELL);
         FlRng rng = {fl_key(key, (uint64_t)(uint32_t)cx << 32 | (uint32_t)cy)};
-        const bool any = fl_rng_float(&rng) < .4f;
+        const bool any = fl_rng_float(&rng) < .25f;
         const float radius = 26 + 34 * fl_rng_float(&rng), room = BLOOM_CELL - 3 * radius;
         const float dx =
             at->x[i] - (float)cx * BLOOM_CELL - 1.5f * radius - room * fl_rng_float(&rng);
@@ -145,7 +145,7 @@ static void find_blooms(const FlWash *wash, const Places *at, Values values)
             at->y[i] - (float)cy * BLOOM_CELL - 1.5f * radius - room * fl_rng_float(&rng);
         const float away = sqrtf(dx * dx + 1.4f * dy * dy) - radius + .35f * radius * bend[i];
         values[FL_WASH_BLOOM][i] = any ? away + 5 * crinkle[i] : 1000;
-        values[FL_WASH_BLOOMS][i] = any ? fl_smooth(.4f + .8f * values[FL_WASH_BLOOMS][i]) : 0;
+        values[FL_WASH_BLOOMS][i] = any ? fl_smooth(.2f + values[FL_WASH_BLOOMS][i]) : 0;
     }
 }
 
