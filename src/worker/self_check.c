@@ -129,7 +129,8 @@ static int count_inner(const uint32_t *a, const uint32_t *b, int width, int heig
     int n = 0;
     for (int y = 1; y < height - 1; y++)
         for (int x = 1; x < width - 1; x++) {
-            bool inner = true;
+            const size_t centre = (size_t)y * (size_t)width + (size_t)x;
+            bool inner = a[centre] != b[centre];
             for (int k = 0; k < 9 && inner; k++) {
                 const size_t p = (size_t)(y + k / 3 - 1) * (size_t)width + (size_t)(x + k % 3 - 1);
                 inner = difference(a[p], b[p]) > VISIBLE;
