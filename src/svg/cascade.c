@@ -537,14 +537,6 @@ static void show_with_variables(Cascade *c, xmlNode *use, Style *style)
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
-static void set_attribute(xmlNode *node, const char *name, const char *value)
-{
-    if (*value)
-        xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)value);
-    else
-        xmlUnsetProp(node, (const xmlChar *)name);
-}
-
 /** Converts attributes that are properties as well, where librsvg would not understand them. */
 static void compute_attributes(Cascade *c, xmlNode *node, const Style *style)
 {
@@ -569,7 +561,7 @@ static void compute_attributes(Cascade *c, xmlNode *node, const Style *style)
         }
         g_autofree char *value = compute(c, name, property, trimmed, style);
         if (strcmp(value, trimmed) != 0)
-            set_attribute(node, name, value);
+            fl_set_attribute(node, name, value);
     }
 }
 
@@ -595,11 +587,11 @@ static void apply(Cascade *c, xmlNode *node, const Value *v, const Style *style,
         break;
     case FL_CSS_GEOMETRY:
         if (strcmp(value, "inherit") != 0 && takes_geometry(node, v->name))
-            set_attribute(node, v->name, strcmp(value, "auto") == 0 ? "" : value);
+            fl_set_attribute(node, v->name, strcmp(value, "auto") == 0 ? "" : value);
         break;
     default:
         if (!*value)
-            xmlUnsetProp(node, (const xmlChar *)v->name);
+            fl_set_attribute(node, v->name, NULL);
         else
             g_string_append_printf(text, "%s%s:%s", text->len ? ";" : "", v->name, value);
         break;
@@ -608,11 +600,9 @@ static void apply(Cascade *c, xmlNode *node, const Value *v, const Style *style,
 
 static void enter_viewport(Style *style, const xmlNode *node)
 {
-    g_autoptr(xmlChar) box = fl_attribute(node, "viewBox");
     g_autoptr(xmlChar) width = fl_attribute(node, "width"), height = fl_attribute(node, "height");
     double v[4];
-    if (box && sscanf((const char *)box, "%lf%*[ ,\t\r\n]%lf%*[ ,\t\r\n]%lf%*[ ,\t\r\n]%lf", &v[0],
-                      &v[1], &v[2], &v[3]) == 4) {
+    if (fl_view_box(node, v)) {
         style->units.width = v[2], style->units.height = v[3];
         return;
     }
@@ -672,7 +662,7 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
         if (g_array_index(values, Value, i).property)
             apply(c, node, &g_array_index(values, Value, i), &style, text, &effects);
     if (values->len > 0 || own->len > 0)
-        set_attribute(node, "style", text->str);
+        fl_set_attribute(node, "style", text->str);
     g_string_free(text, TRUE);
     show_with_variables(c, node, &style);
     for (xmlNode *child = node->children; child && !fl_is(node, "foreignObject");

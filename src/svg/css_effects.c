@@ -37,11 +37,6 @@ static char *value_or_attribute(const FlCssEffects *effects, const xmlNode *node
     return value && *value ? g_strdup(value) : attribute ? g_strdup((char *)attribute) : NULL;
 }
 
-static void set_attribute(xmlNode *node, const char *name, const char *value)
-{
-    xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)value);
-}
-
 static void set_matrix(xmlNode *node, const FlAffine *m)
 {
     const double v[] = {m->xx, m->yx, m->xy, m->yy, m->x0, m->y0};
@@ -51,7 +46,7 @@ static void set_matrix(xmlNode *node, const FlAffine *m)
         g_string_append_printf(text, "%s%s", i ? " " : "", number);
     }
     g_string_append_c(text, ')');
-    set_attribute(node, "transform", text->str);
+    fl_set_attribute(node, "transform", text->str);
     g_string_free(text, TRUE);
 }
 
@@ -242,10 +237,10 @@ static void add_clip(xmlNode *node, const char *d, bool evenodd, int *n_clips)
     g_autofree char *declaration = g_strdup_printf("clip-path:url(#%s)", id);
     xmlNode *clip = add_child(xmlDocGetRootElement(node->doc), "clipPath");
     xmlNode *path = add_child(clip, "path");
-    set_attribute(clip, "id", id);
-    set_attribute(path, "d", d);
+    fl_set_attribute(clip, "id", id);
+    fl_set_attribute(path, "d", d);
     if (evenodd)
-        set_attribute(path, "clip-rule", "evenodd");
+        fl_set_attribute(path, "clip-rule", "evenodd");
     fl_declare(node, declaration);
 }
 
@@ -348,12 +343,12 @@ static char *add_filter(xmlNode *node, const char *function, const FlCssUnits *u
     g_autofree char *id = g_strdup_printf("fl-filter-%d", (*n)++);
     xmlNode *filter = add_child(xmlDocGetRootElement(node->doc), "filter");
     xmlNode *matrix = add_child(filter, "feColorMatrix");
-    set_attribute(filter, "id", id);
-    set_attribute(filter, "filterUnits", "userSpaceOnUse");
-    set_attribute(filter, "x", "-100%"), set_attribute(filter, "y", "-100%");
-    set_attribute(filter, "width", "300%"), set_attribute(filter, "height", "300%");
-    set_attribute(matrix, "color-interpolation-filters", "sRGB");
-    set_attribute(matrix, "values", values->str);
+    fl_set_attribute(filter, "id", id);
+    fl_set_attribute(filter, "filterUnits", "userSpaceOnUse");
+    fl_set_attribute(filter, "x", "-100%"), fl_set_attribute(filter, "y", "-100%");
+    fl_set_attribute(filter, "width", "300%"), fl_set_attribute(filter, "height", "300%");
+    fl_set_attribute(matrix, "color-interpolation-filters", "sRGB");
+    fl_set_attribute(matrix, "values", values->str);
     g_string_free(values, TRUE);
     return g_strdup_printf("url(#%s)", id);
 }
@@ -391,15 +386,16 @@ static const char *apply_background(const FlCssEffects *effects, xmlNode *node,
         return NULL;
     if (!colour)
         return name;
-    g_autoptr(xmlChar) view = fl_attribute(node, "viewBox");
-    g_auto(GStrv) box =
-        g_regex_split_simple("[ ,\t\r\n]+", view ? (char *)view : "0 0 100% 100%", 0, 0);
+    double box[4] = {0, 0, units->width, units->height};
+    fl_view_box(node, box);
     static const char *const names[] = {"x", "y", "width", "height"};
     xmlNode *rect = xmlNewDocNode(node->doc, node->ns, (const xmlChar *)"rect", NULL);
-    set_attribute(rect, "id", "background");
-    set_attribute(rect, "fill", colour);
-    for (guint i = 0; i < 4 && i < g_strv_length(box); i++)
-        set_attribute(rect, names[i], box[i]);
+    fl_set_attribute(rect, "id", "background");
+    fl_set_attribute(rect, "fill", colour);
+    for (int i = 0; i < 4; i++) {
+        g_autofree char *side = fl_css_number_text(box[i]);
+        fl_set_attribute(rect, names[i], side);
+    }
     if (node->children)
         xmlAddPrevSibling(node->children, rect);
     else
@@ -414,14 +410,14 @@ static const char *apply_path(const FlCssEffects *effects, xmlNode *node)
     if (!value || !*value || !fl_is(node, "path"))
         return NULL;
     if (strcmp(value, "none") == 0) {
-        set_attribute(node, "d", "");
+        fl_set_attribute(node, "d", "");
         return NULL;
     }
     const bool is_path = fl_css_call(value, &name, &arguments) && strcmp(name, "path") == 0;
     g_autofree char *d = is_path ? fl_css_string_or_url(arguments) : NULL;
     if (!d)
         return "d";
-    set_attribute(node, "d", d);
+    fl_set_attribute(node, "d", d);
     return NULL;
 }
 
@@ -470,7 +466,7 @@ static void apply_path_length(xmlNode *node, const FlCssUnits *units)
     if (!text || !fl_css_number((const char *)text, units, 0, &wanted) || !(wanted > 0))
         return;
     const double length = fl_css_outline_length(node, units);
-    xmlUnsetProp(node, (const xmlChar *)"pathLength");
+    fl_set_attribute(node, "pathLength", NULL);
     if (length > 0)
         scale_stroke(node, dashes, length / wanted, units);
 }
@@ -495,7 +491,7 @@ const char *fl_css_effects_apply(const FlCssEffects *effects, xmlNode *node,
     const char *vector = fl_css_effects_get(effects, "vector-effect");
     const char *problem = apply_path(effects, node);
     if (vector)
-        set_attribute(node, "vector-effect", vector);
+        fl_set_attribute(node, "vector-effect", vector);
     const char *clip = apply_clip(effects, node, units, n_clips);
     const char *transform = apply_transform(effects, node, units);
     const char *background = apply_background(effects, node, units);
@@ -503,7 +499,7 @@ const char *fl_css_effects_apply(const FlCssEffects *effects, xmlNode *node,
     apply_filter(effects, node, units, n_clips);
     apply_path_length(node, units);
     apply_light(node);
-    xmlUnsetProp(node, (const xmlChar *)"transform-origin");
+    fl_set_attribute(node, "transform-origin", NULL);
     return problem ? problem : clip ? clip : transform ? transform : mask ? mask : background;
 }
 
@@ -520,7 +516,7 @@ static void keep_stroke(xmlNode *node, const FlAffine *around, const FlAffine *a
     const double skew = all->xx * all->xy + all->yx * all->yy;
     const bool even = fabs(a - b) < 1e-3 * (a + b) && fabs(skew) < 1e-3 * (a + b);
     FlAffine back;
-    xmlUnsetProp(node, (const xmlChar *)"vector-effect");
+    fl_set_attribute(node, "vector-effect", NULL);
     if (!(size > 0))
         return;
     g_autofree char *d = even ? NULL : fl_css_outline_text(node, units, all);
@@ -529,7 +525,7 @@ static void keep_stroke(xmlNode *node, const FlAffine *around, const FlAffine *a
         return;
     }
     xmlNodeSetName(node, (const xmlChar *)"path");
-    set_attribute(node, "d", d);
+    fl_set_attribute(node, "d", d);
     set_matrix(node, &back);
 }
 

@@ -415,7 +415,7 @@ static char *path_shape(const char *arguments, FlCssBox box, bool *evenodd)
     xmlNode *path = xmlNewDocNode(doc, NULL, (const xmlChar *)"path", NULL);
     xmlDocSetRootElement(doc, path);
     xmlSetNs(path, xmlNewNs(path, (const xmlChar *)"http://www.w3.org/2000/svg", NULL));
-    xmlSetProp(path, (const xmlChar *)"d", (const xmlChar *)d);
+    fl_set_attribute(path, "d", d);
     const FlAffine move = {1, 0, 0, 1, box.x, box.y};
     const FlCssUnits units = {0};
     return fl_css_outline_text(path, &units, &move);

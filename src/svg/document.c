@@ -92,7 +92,7 @@ bool fl_declare(xmlNode *node, const char *declarations)
         return false;
     g_autofree char *all =
         g_strconcat(style ? (const char *)style : "", style ? ";" : "", declarations, NULL);
-    xmlSetProp(node, (const xmlChar *)"style", (const xmlChar *)all);
+    fl_set_attribute(node, "style", all);
     return true;
 }
 
@@ -101,6 +101,31 @@ bool fl_document_is_huge(size_t bytes)
     enum { LARGEST = 9000000 }; // bytes that the XML parsers take as usual
     return bytes > LARGEST || fl_limit(FL_LIMIT_DEPTH) > 250 || fl_limit(FL_LIMIT_PATH) > 9000000 ||
            fl_limit(FL_LIMIT_ELEMENTS) > 200000;
+}
+
+void fl_set_attribute(xmlNode *node, const char *name, const char *value)
+{
+    if (value && *value)
+        xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)value);
+    else
+        xmlUnsetProp(node, (const xmlChar *)name);
+}
+
+bool fl_view_box(const xmlNode *node, double box[4])
+{
+    g_autoptr(xmlChar) text = fl_attribute(node, "viewBox");
+    const char *s = (const char *)text;
+    for (int k = 0; k < 4; k++) {
+        char *end = NULL;
+        if (!s)
+            return false;
+        s += strspn(s, " \t\r\n\f,");
+        box[k] = g_ascii_strtod(s, &end);
+        if (end == s)
+            return false;
+        s = end;
+    }
+    return box[2] > 0 && box[3] > 0;
 }
 
 static double mebibytes(double bytes)

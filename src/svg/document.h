@@ -47,6 +47,12 @@ bool fl_is_container(const xmlNode *node);
 /** An attribute without a namespace; NULL if absent. To be freed with xmlFree(). */
 xmlChar *fl_attribute(const xmlNode *node, const char *name);
 
+/** Sets an attribute without a namespace; removes it if the value is NULL or "". */
+void fl_set_attribute(xmlNode *node, const char *name, const char *value);
+
+/** Reads viewBox: x, y, width and height. Returns: false if it is missing, damaged or empty. */
+bool fl_view_box(const xmlNode *node, double box[4]);
+
 /** An attribute with any prefix, be it declared or not, trimmed; NULL if absent. g_free(). */
 char *fl_foreign_attribute(const xmlNode *node, const char *name);
 

@@ -49,7 +49,7 @@ static bool replace_inputs(xmlNode *node)
         if (node->type != XML_ELEMENT_NODE)
             continue;
         for (const char *input; (input = background_input(node)); found = true)
-            xmlSetProp(node, (const xmlChar *)input, (const xmlChar *)EMPTY);
+            fl_set_attribute(node, input, EMPTY);
         found = replace_inputs(node->children) || found;
     }
     return found;
@@ -77,10 +77,10 @@ static bool empty_background(xmlNode *filter)
     if (!first || !replace_inputs(first))
         return false;
     xmlNode *flood = xmlNewDocNode(filter->doc, filter->ns, (const xmlChar *)"feFlood", NULL);
-    xmlSetProp(flood, (const xmlChar *)"flood-opacity", (const xmlChar *)"0");
-    xmlSetProp(flood, (const xmlChar *)"result", (const xmlChar *)EMPTY);
+    fl_set_attribute(flood, "flood-opacity", "0");
+    fl_set_attribute(flood, "result", EMPTY);
     if (!xmlHasProp(first, (const xmlChar *)"in")) // its input was not the flood
-        xmlSetProp(first, (const xmlChar *)"in", (const xmlChar *)"SourceGraphic");
+        fl_set_attribute(first, "in", "SourceGraphic");
     xmlAddPrevSibling(first, flood);
     return true;
 }
@@ -116,7 +116,7 @@ static void set_modes(xmlNode *node, GHashTable *modes)
             g_autoptr(xmlChar) style = fl_attribute(node, "style");
             g_autofree char *all = g_strdup_printf("%s;filter:none;mix-blend-mode:%s",
                                                    style ? (char *)style : "", mode);
-            xmlSetProp(node, (const xmlChar *)"style", (const xmlChar *)all);
+            fl_set_attribute(node, "style", all);
         }
         set_modes(node->children, modes);
     }

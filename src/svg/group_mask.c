@@ -46,7 +46,7 @@ static void add_flood(xmlDoc *doc)
     xmlNode *root = xmlDocGetRootElement(doc);
     xmlNode *filter = xmlNewChild(root, root->ns, (const xmlChar *)"filter", NULL);
     for (size_t i = 0; i < G_N_ELEMENTS(attributes); i++)
-        xmlSetProp(filter, (const xmlChar *)attributes[i][0], (const xmlChar *)attributes[i][1]);
+        fl_set_attribute(filter, attributes[i][0], attributes[i][1]);
     xmlNewChild(filter, root->ns, (const xmlChar *)"feFlood", NULL);
 }
 

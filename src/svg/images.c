@@ -77,7 +77,7 @@ static void complete_size(xmlNode *node, const int size[2])
         return;
     const double ratio = (double)size[0] / size[1], side = g_ascii_strtod(text, NULL);
     g_autofree char *other = fl_css_number_text(width ? side / ratio : side * ratio);
-    xmlSetProp(node, (xmlChar *)(width ? "height" : "width"), (xmlChar *)other);
+    fl_set_attribute(node, (width ? "height" : "width"), other);
 }
 
 /** Has a node refer to a PNG instead of a WebP image, whose size has been checked. */
@@ -112,24 +112,17 @@ static void enlarge(xmlNode *root)
     g_autoptr(xmlChar) width = fl_attribute(root, "width"), height = fl_attribute(root, "height");
     const double sides[2] = {width ? g_ascii_strtod((char *)width, NULL) : 0,
                              height ? g_ascii_strtod((char *)height, NULL) : 0};
-    g_autoptr(xmlChar) view = fl_attribute(root, "viewBox");
-    g_auto(GStrv) box = g_regex_split_simple("[ ,\t\r\n]+", view ? (char *)view : "", 0, 0);
-    const bool has_box = g_strv_length(box) == 4, has_sides = sides[0] > 0 && sides[1] > 0;
-    const double larger = fmax(has_sides ? sides[0]
-                               : has_box ? g_ascii_strtod(box[2], NULL)
-                                         : 0,
-                               has_sides ? sides[1]
-                               : has_box ? g_ascii_strtod(box[3], NULL)
-                                         : 0);
+    double box[4] = {0, 0, sides[0], sides[1]};
+    const bool has_box = fl_view_box(root, box), has_sides = sides[0] > 0 && sides[1] > 0;
+    const double *size = has_sides ? sides : box + 2, larger = fmax(size[0], size[1]);
     if (!(larger > 0) || larger >= ENLARGED)
         return;
     g_autofree char *whole = g_strdup_printf("0 0 %s %s", width, height);
     if (!has_box)
-        xmlSetProp(root, (xmlChar *)"viewBox", (xmlChar *)whole);
+        fl_set_attribute(root, "viewBox", whole);
     for (int i = 0; i < 2; i++) {
-        const double side = has_sides ? sides[i] : g_ascii_strtod(box[2 + i], NULL);
-        g_autofree char *text = fl_css_number_text(side * ENLARGED / larger);
-        xmlSetProp(root, (xmlChar *)(i ? "height" : "width"), (xmlChar *)text);
+        g_autofree char *text = fl_css_number_text(size[i] * ENLARGED / larger);
+        fl_set_attribute(root, (i ? "height" : "width"), text);
     }
 }
 

@@ -59,23 +59,6 @@ static FlAffine fit_box(const double box[4], double width, double height, const 
                       ay * (height - sy * box[3]) - sy * box[1]};
 }
 
-static bool view_box(const xmlNode *node, double box[4])
-{
-    g_autoptr(xmlChar) text = fl_attribute(node, "viewBox");
-    const char *s = (const char *)text;
-    for (int k = 0; k < 4; k++) {
-        char *end = NULL;
-        if (!s)
-            return false;
-        s += strspn(s, " \t\r\n\f,");
-        box[k] = g_ascii_strtod(s, &end);
-        if (end == s)
-            return false;
-        s = end;
-    }
-    return box[2] > 0 && box[3] > 0;
-}
-
 /** An <svg>: its place, its viewport and its viewBox. */
 static void enter_viewport(const FlInheritance *inheritance, const xmlNode *node, FlInherited *s)
 {
@@ -83,7 +66,7 @@ static void enter_viewport(const FlInheritance *inheritance, const xmlNode *node
     const double w = s->width, h = s->height;
     bool *broken = &s->broken;
     double box[4] = {0, 0, 0, 0};
-    const bool boxed = view_box(node, box);
+    const bool boxed = fl_view_box(node, box);
     g_autoptr(xmlChar) ratio = fl_attribute(node, "preserveAspectRatio");
     if (outermost) { // the page is its viewport; without a viewBox its size is one
         if (!boxed) {

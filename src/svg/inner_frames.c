@@ -71,24 +71,23 @@ static void scale_size(xmlNode *root, const char *name, double factor)
     g_autofree char *number =
         fl_css_number_text(factor * g_ascii_strtod((const char *)text, &unit));
     g_autofree char *size = g_strconcat(number, unit, NULL);
-    xmlSetProp(root, (const xmlChar *)name, (const xmlChar *)size);
+    fl_set_attribute(root, name, size);
 }
 
 static void show_page(xmlNode *root, const xmlNode *page)
 {
     static const char *const names[] = {"x", "y", "width", "height"};
-    g_autoptr(xmlChar) view = fl_attribute(root, "viewBox");
-    g_auto(GStrv) old = g_regex_split_simple("[ ,\t\r\n]+", view ? (char *)view : "", 0, 0);
+    double old[4] = {0};
+    fl_view_box(root, old);
     GString *box = g_string_new(NULL);
     for (int i = 0; i < 4; i++) {
         const double v = number_of(page, names[i]);
         g_autofree char *text = fl_css_number_text(v);
         g_string_append_printf(box, "%s%s", i ? " " : "", text);
-        const double before = g_strv_length(old) == 4 ? g_ascii_strtod(old[i], NULL) : 0;
-        if (i >= 2 && before > 0 && v > 0)
-            scale_size(root, names[i], v / before);
+        if (i >= 2 && old[i] > 0 && v > 0)
+            scale_size(root, names[i], v / old[i]);
     }
-    xmlSetProp(root, (const xmlChar *)"viewBox", (const xmlChar *)box->str);
+    fl_set_attribute(root, "viewBox", box->str);
     g_string_free(box, TRUE);
 }
 
@@ -107,7 +106,7 @@ bool fl_select_page(xmlDoc *doc, int page, const char *path, GError **error)
     }
     xmlNs *xlink = xmlSearchNsByHref(doc, use, (const xmlChar *)"http://www.w3.org/1999/xlink");
     xmlUnsetNsProp(use, xlink, (const xmlChar *)"href");
-    xmlSetProp(use, (const xmlChar *)"href", (const xmlChar *)g_strstrip(fbf[page - 1]));
+    fl_set_attribute(use, "href", g_strstrip(fbf[page - 1]));
     for (xmlNode *child = use->children, *next; child; child = next) {
         next = child->next;
         if (fl_is_animation(child)) {

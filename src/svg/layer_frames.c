@@ -56,8 +56,8 @@ static void show(xmlNode *layer)
 {
     g_autoptr(xmlChar) style = fl_attribute(layer, "style");
     g_autofree char *shown = g_strconcat(style ? (const char *)style : "", ";display:inline", NULL);
-    xmlUnsetProp(layer, (const xmlChar *)"display");
-    xmlSetProp(layer, (const xmlChar *)"style", (const xmlChar *)shown);
+    fl_set_attribute(layer, "display", NULL);
+    fl_set_attribute(layer, "style", shown);
 }
 
 static void drop_names(xmlNode *layer)

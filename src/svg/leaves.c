@@ -92,7 +92,7 @@ static char *give_id(Walk *w, xmlNode *node)
         made = g_strdup_printf("fl-leaf-%d", w->n_made++);
     } while (g_hash_table_contains(w->by_id, made));
     g_hash_table_insert(w->by_id, g_strdup(made), node);
-    xmlSetProp(node, (const xmlChar *)"id", (const xmlChar *)made);
+    fl_set_attribute(node, "id", made);
     return made;
 }
 

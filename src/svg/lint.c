@@ -159,7 +159,7 @@ static void check_foreign(const Lint *lint, xmlNode *node)
     warn(lint, node, text);
     xmlNodeSetName(node, (const xmlChar *)"rect");
     xmlNodeSetContent(node, NULL);
-    xmlSetProp(node, (const xmlChar *)"fill", (const xmlChar *)colour);
+    fl_set_attribute(node, "fill", colour);
 }
 
 /** Returns: true if an attribute has more than one value. */

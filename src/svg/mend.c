@@ -1,5 +1,6 @@
 #include "svg/passes.h"
 
+#include "base/limits.h"
 #include "svg/css_scan.h"
 #include "svg/effects.h"
 #include "svg/normalise.h"
@@ -7,11 +8,6 @@
 #include <string.h>
 
 #define MOST_CLIPS 16 // of clip paths that clip each other
-
-static void set(xmlNode *node, const char *name, const char *value)
-{
-    xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)value);
-}
 
 static xmlNode *element_beside(xmlNode *node, bool before)
 {
@@ -34,7 +30,7 @@ static char *name_input(xmlNode *step, int number)
                  : before ? g_strdup_printf("fl-before-%d", number)
                           : g_strdup("SourceGraphic");
     if (!in && before)
-        set(before, "result", name);
+        fl_set_attribute(before, "result", name);
     xmlFree(in);
     return name;
 }
@@ -46,7 +42,7 @@ static xmlNode *add_step(xmlNode *shadow, const char *name)
     xmlNode *step = xmlDocCopyNode(shadow, shadow->doc, 2);
     xmlNodeSetName(step, (const xmlChar *)name);
     for (size_t i = 0; i < G_N_ELEMENTS(not_its); i++)
-        xmlUnsetProp(step, (const xmlChar *)not_its[i]);
+        fl_set_attribute(step, not_its[i], NULL);
     return xmlAddPrevSibling(shadow, step);
 }
 
@@ -58,17 +54,17 @@ static void mend_shadow(xmlNode *node, int number)
     g_autofree char *place = g_strdup_printf("fl-shadow-%d", number);
     for (size_t i = 0; i < G_N_ELEMENTS(lengths); i++)
         if (!xmlHasProp(node, (const xmlChar *)lengths[i]))
-            set(node, lengths[i], "2");
-    set(add_step(node, "feGaussianBlur"), "in", in);
-    set(add_step(node, "feOffset"), "result", place);
+            fl_set_attribute(node, lengths[i], "2");
+    fl_set_attribute(add_step(node, "feGaussianBlur"), "in", in);
+    fl_set_attribute(add_step(node, "feOffset"), "result", place);
     add_step(node, "feFlood");
     xmlNode *cut = add_step(node, "feComposite");
-    set(cut, "operator", "in");
-    set(cut, "in2", place);
+    fl_set_attribute(cut, "operator", "in");
+    fl_set_attribute(cut, "in2", place);
     xmlNodeSetName(node, (const xmlChar *)"feMerge");
     xmlNodeSetContent(node, NULL);
     xmlNewChild(node, node->ns, (const xmlChar *)"feMergeNode", NULL);
-    set(xmlNewChild(node, node->ns, (const xmlChar *)"feMergeNode", NULL), "in", in);
+    fl_set_attribute(xmlNewChild(node, node->ns, (const xmlChar *)"feMergeNode", NULL), "in", in);
 }
 
 /** Drops numbers that cannot be read, for which librsvg would leave out all that is filtered. */
@@ -81,7 +77,7 @@ static void mend_numbers(xmlNode *step)
         const char *s = (const char *)text;
         const bool length = i > 1 && i != 3 && i != 4; // which is not negative
         if (s && (!*s || s[strspn(s, "0123456789+-.eE ,\t\r\n")] || (length && *s == '-')))
-            xmlUnsetProp(step, (const xmlChar *)names[i]);
+            fl_set_attribute(step, names[i], NULL);
     }
 }
 
@@ -105,7 +101,7 @@ static void mend_gradient(xmlNode *node)
     if (long_enough || template || xmlHasProp(node, (const xmlChar *)"href"))
         return;
     if (!linear) // librsvg draws nothing without a radius
-        set(node, "r", "1");
+        fl_set_attribute(node, "r", "1");
     xmlNode *last = node->last;
     while (last && !fl_is(last, "stop"))
         last = last->prev;
@@ -136,7 +132,7 @@ static void mend_points(xmlNode *node)
     if (!s || *s || n % 2 == 0)
         return; // librsvg decides
     *good = '\0';
-    set(node, "points", (char *)text);
+    fl_set_attribute(node, "points", (char *)text);
 }
 
 /* ---- clip paths that are clipped ------------------------------------------------------------- */
@@ -165,8 +161,8 @@ static xmlNode *wrap(xmlNode *node, const xmlNode *clip)
     for (size_t i = 0; i < G_N_ELEMENTS(outer); i++) {
         g_autoptr(xmlChar) text = fl_attribute(node, outer[i]);
         if (text)
-            set(group, outer[i], (char *)text);
-        xmlUnsetProp(node, (const xmlChar *)outer[i]);
+            fl_set_attribute(group, outer[i], (char *)text);
+        fl_set_attribute(node, outer[i], NULL);
     }
     xmlReplaceNode(node, group);
     xmlAddChild(group, node);
@@ -183,27 +179,47 @@ static void mend_clip(xmlNode *node, GHashTable *ids)
     }
 }
 
+/* ---- symbols --------------------------------------------------------------------------------- */
+
+/** librsvg cuts a <symbol> off at its viewBox, a browser at the place where <use> shows it: it is
+ * copied to that place. A cycle, or what is too large, is left for fl_document_normalise() to tell.
+ */
+static void mend_use(xmlNode *use, GHashTable *ids, int *n_copied)
+{
+    const xmlNode *target = fl_shown_by_use(use, ids);
+    if (!target || !fl_is(target, "symbol") || *n_copied > fl_limit(FL_LIMIT_ELEMENTS))
+        return;
+    g_autoptr(xmlChar) id = fl_attribute(target, "id");
+    int depth = 0;
+    for (const xmlNode *at = use; at && at->type == XML_ELEMENT_NODE; at = at->parent) {
+        g_autoptr(xmlChar) copied = fl_attribute(at, FL_COPIED_ID);
+        if (at == target || xmlStrEqual(copied, id) || ++depth > fl_limit(FL_LIMIT_DEPTH))
+            return;
+    }
+    *n_copied += fl_use_show(use, xmlDocCopyNode((xmlNode *)target, use->doc, 1));
+}
+
 /* ---- words that librsvg does not know -------------------------------------------------------- */
 
 static void mend_words(xmlNode *node)
 {
     g_autofree char *overflow = fl_property(node, "overflow");
     if (fl_is(node, "symbol") && !overflow)
-        set(node, "overflow", "hidden");                // a browser's own style sheet says so
+        fl_set_attribute(node, "overflow", "hidden");   // a browser's own style sheet says so
     if (fl_is(node, "mask") && fl_is_set(node, "mask")) // which no browser applies
         fl_declare(node, "mask:none");
     g_autofree char *display = fl_property(node, "display");
     if (display && strcmp(display, "contents") == 0) { // no box, no effects
         fl_declare(node, "opacity:1;filter:none;mask:none;clip-path:none;mix-blend-mode:normal");
-        xmlUnsetProp(node, (const xmlChar *)"transform");
+        fl_set_attribute(node, "transform", NULL);
     }
     if (fl_is(node->parent, "switch") && fl_is_eligible(node))
-        xmlUnsetProp(node, (const xmlChar *)"systemLanguage");
+        fl_set_attribute(node, "systemLanguage", NULL);
 }
 
 /* ---- the document ---------------------------------------------------------------------------- */
 
-static void mend(xmlNode *node, GHashTable *ids, int *n_shadows)
+static void mend(xmlNode *node, GHashTable *ids, int *n_shadows, int *n_copied)
 {
     static const char *const gradients[] = {"linearGradient", "radialGradient", NULL};
     static const char *const with_points[] = {"polygon", "polyline", NULL};
@@ -215,12 +231,14 @@ static void mend(xmlNode *node, GHashTable *ids, int *n_shadows)
         mend_gradient(node);
     else if (fl_is_one_of(node, with_points))
         mend_points(node);
+    else if (fl_is(node, "use"))
+        mend_use(node, ids, n_copied);
     for (xmlNode *child = node->children, *next; child; child = next) {
         next = child->next;
         if (child->type != XML_ELEMENT_NODE)
             continue;
         mend_words(child);
-        mend(child, ids, n_shadows);
+        mend(child, ids, n_shadows, n_copied);
         if (!fl_is(child, "clipPath") && !fl_is(node, "clipPath"))
             mend_clip(child, ids);
     }
@@ -229,6 +247,6 @@ static void mend(xmlNode *node, GHashTable *ids, int *n_shadows)
 void fl_document_mend(xmlDoc *doc)
 {
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
-    int n_shadows = 0;
-    mend(xmlDocGetRootElement(doc), ids, &n_shadows);
+    int n_shadows = 0, n_copied = 0;
+    mend(xmlDocGetRootElement(doc), ids, &n_shadows, &n_copied);
 }

@@ -39,7 +39,7 @@ static void name_groups(xmlNode *node, GHashTable *ids, int *n_made)
                 g_free(made);
                 made = g_strdup_printf(FL_GROUP_ID "%d", (*n_made)++);
             } while (g_hash_table_contains(ids, made));
-            xmlSetProp(child, (const xmlChar *)"id", (const xmlChar *)made);
+            fl_set_attribute(child, "id", made);
         }
         name_groups(child, ids, n_made);
     }
@@ -139,8 +139,8 @@ static int put_ids_aside(xmlNode *node)
     int n = 1;
     g_autoptr(xmlChar) id = fl_attribute(node, "id");
     if (id) {
-        xmlUnsetProp(node, (const xmlChar *)"id");
-        xmlSetProp(node, (const xmlChar *)FL_COPIED_ID, id);
+        fl_set_attribute(node, "id", NULL);
+        fl_set_attribute(node, FL_COPIED_ID, (const char *)id);
     }
     for (xmlNode *child = node->children; child; child = child->next)
         if (child->type == XML_ELEMENT_NODE)
@@ -153,7 +153,7 @@ static xmlChar *take(xmlNode *node, const char *name)
 {
     xmlChar *value = fl_attribute(node, name);
     if (value)
-        xmlUnsetProp(node, (const xmlChar *)name);
+        fl_set_attribute(node, name, NULL);
     return value;
 }
 
@@ -169,9 +169,9 @@ static void show_copy(xmlNode *use, xmlNode *shown, const xmlChar *width, const 
         xmlNodeSetName(shown, (const xmlChar *)"svg");
     if (symbol || fl_is(shown, "svg")) {
         if (width || symbol)
-            xmlSetProp(shown, (const xmlChar *)"width", width ? width : (const xmlChar *)"100%");
+            fl_set_attribute(shown, "width", width ? (const char *)width : "100%");
         if (height || symbol)
-            xmlSetProp(shown, (const xmlChar *)"height", height ? height : (const xmlChar *)"100%");
+            fl_set_attribute(shown, "height", height ? (const char *)height : "100%");
     }
     xmlAddChild(use, shown);
 }
@@ -184,9 +184,9 @@ static xmlNode *place(xmlNode *use, const xmlChar *x, const xmlChar *y)
     if ((!x || is_zero(x)) && (!y || is_zero(y)))
         return use;
     xmlNode *svg = xmlNewChild(use, use->ns, (const xmlChar *)"svg", NULL);
-    xmlSetProp(svg, (const xmlChar *)"x", x ? x : (const xmlChar *)"0");
-    xmlSetProp(svg, (const xmlChar *)"y", y ? y : (const xmlChar *)"0");
-    xmlSetProp(svg, (const xmlChar *)"overflow", (const xmlChar *)"visible");
+    fl_set_attribute(svg, "x", x ? (const char *)x : "0");
+    fl_set_attribute(svg, "y", y ? (const char *)y : "0");
+    fl_set_attribute(svg, "overflow", "visible");
     return svg;
 }
 

@@ -25,9 +25,9 @@ bool fl_images_check(xmlDoc *doc, const char *path, int number, GPtrArray *files
                      FlWarnings *warnings, GError **error);
 
 /**
- * Rewrites what librsvg leaves out and a browser draws into what it draws: <feDropShadow>, clips of
- * clip paths, gradients of no length and lists of points that end in the middle of a pair;
- * languages in a <switch> are resolved, and a <mask> has no mask.
+ * Rewrites what librsvg leaves out and a browser draws: <feDropShadow>, clips of clip paths,
+ * gradients of no length, lists of points that end with half a pair. What <use> shows of a <symbol>
+ * is cut off at its place, languages in a <switch> are resolved, and a <mask> has no mask.
  */
 void fl_document_mend(xmlDoc *doc);
 

@@ -165,7 +165,7 @@ static void set_value(xmlNode *node, const char *name, const char *value)
     if (foreign) {
         xmlSetNsProp(node, foreign->ns, foreign->name, (const xmlChar *)value);
     } else {
-        xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)value);
+        fl_set_attribute(node, name, value);
     }
 }
 
@@ -196,7 +196,7 @@ static void apply_transform(const FlAnimation *a, double seconds)
     g_autofree char *all =
         g_strdup_printf("%s%s%s(%s)", adds && own ? (const char *)own : "", adds && own ? " " : "",
                         type ? type : "translate", value);
-    xmlSetProp(a->target, (const xmlChar *)a->attribute, (const xmlChar *)all);
+    fl_set_attribute(a->target, a->attribute, all);
 }
 
 /** The path of animateMotion: its own, that of an <mpath>, or lines between its values. */
@@ -264,7 +264,7 @@ static void apply_motion(const FlTimeline *timeline, const FlAnimation *a, doubl
     g_autofree char *turn = fl_css_number_text(angle);
     g_autofree char *all =
         g_strdup_printf("translate(%s,%s) rotate(%s) %s", x, y, turn, own ? (char *)own : "");
-    xmlSetProp(a->target, (const xmlChar *)"transform", (const xmlChar *)all);
+    fl_set_attribute(a->target, "transform", all);
 }
 
 static void apply_value(const FlAnimation *a, double seconds)

@@ -13,7 +13,7 @@ static void set_number(xmlNode *node, const char *name, double value)
 {
     char text[G_ASCII_DTOSTR_BUF_SIZE];
     g_ascii_dtostr(text, sizeof text, value);
-    xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)text);
+    fl_set_attribute(node, name, text);
 }
 
 static void set_canvas(xmlNode *root, const FlCanvas *canvas)
@@ -24,7 +24,7 @@ static void set_canvas(xmlNode *root, const FlCanvas *canvas)
                         g_ascii_dtostr(n[1], sizeof n[1], canvas->y),
                         g_ascii_dtostr(n[2], sizeof n[2], canvas->width),
                         g_ascii_dtostr(n[3], sizeof n[3], canvas->height));
-    xmlSetProp(root, (const xmlChar *)"viewBox", (const xmlChar *)box);
+    fl_set_attribute(root, "viewBox", box);
     set_number(root, "width", canvas->width);
     set_number(root, "height", canvas->height);
 }
