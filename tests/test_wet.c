@@ -18,6 +18,7 @@ typedef struct Scene {
     FlLaid laid;
     FlWetShape shape;
     FlWetDials dials;
+    float spin; // of the disk around its middle, radians a frame
     GArray *fronts, *stains, *below;
 } Scene;
 
@@ -79,8 +80,11 @@ static void mark(Scene *scene, float x0, float x1, float grown)
     draw_disk(x0, RADIUS, scene->before);
     draw_disk(x1, RADIUS + grown, scene->now);
     draw_disk(x1 + 4 * (x1 - x0), RADIUS + grown, scene->ahead);
-    for (int p = 0; p < PIXELS; p++)
-        scene->motion[2 * p] = x1 - x0;
+    for (int p = 0; p < PIXELS; p++) {
+        const float x = (float)(p % SIDE) - x1, y = (float)(p / SIDE) - 100;
+        scene->motion[2 * p] = x1 - x0 + x - cosf(scene->spin) * x - sinf(scene->spin) * y;
+        scene->motion[2 * p + 1] = y - cosf(scene->spin) * y + sinf(scene->spin) * x;
+    }
     g_assert_true(fl_distance(scene->now, SIDE, SIDE, scene->distance, NULL));
     was.now = scene->before;
     g_assert_true(fl_moving_edge_look(&before, &was, NULL));
@@ -134,6 +138,55 @@ static void test_ahead(void)
     for (guint i = 0; i < scene->stains->len; i++)
         g_assert_cmpint(g_array_index(scene->stains, FlStainMark, i).at % SIDE, <, 92);
     g_assert_cmpfloat(charge_of(scene), >, 100);
+    scene_free(scene);
+}
+
+/* The charge of the stains as a share of the area that they have been left on, and their area. */
+static float mean_charge(const Scene *scene, float *area)
+{
+    *area = 0;
+    for (guint i = 0; i < scene->stains->len; i++)
+        *area += g_array_index(scene->stains, FlStainMark, i).lost;
+    return charge_of(scene) / *area;
+}
+
+static void test_quick(void)
+{
+    Scene *scene = scene_new();
+    float area;
+    mark(scene, 60, 64, 0);
+    const float slow = mean_charge(scene, &area);
+    mark(scene, 60, 84, 0);
+    g_assert_cmpfloat(slow, >, 0.5f);
+    g_assert_cmpfloat(mean_charge(scene, &area), <, 0.4f * slow);
+    scene_free(scene);
+}
+
+static void test_spin(void)
+{
+    Scene *scene = scene_new();
+    float straight, spun;
+    mark(scene, 60, 84, 0);
+    const float charge = mean_charge(scene, &straight);
+    scene->spin = 0.7f;
+    mark(scene, 60, 84, 0);
+    g_assert_cmpfloat_with_epsilon(mean_charge(scene, &spun), charge, 0.03f);
+    g_assert_cmpfloat_with_epsilon(spun, straight, 0.03f * straight);
+    scene_free(scene);
+}
+
+static void test_sides(void)
+{
+    Scene *scene = scene_new();
+    mark(scene, 60, 84, 0);
+    for (guint i = 0; i < scene->stains->len; i++) {
+        const FlStainMark *stain = &g_array_index(scene->stains, FlStainMark, i);
+        const int across = abs(stain->at / SIDE - 100);
+        if (across > RADIUS - 5)
+            g_assert_cmpfloat(stain->depth, <, 6);
+        if (across < RADIUS - 20)
+            g_assert_cmpfloat(stain->depth, >, 7);
+    }
     scene_free(scene);
 }
 
@@ -299,6 +352,9 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/wet/a-front-runs-ahead-and-a-stain-stays-behind", test_ahead);
+    g_test_add_func("/wet/a-quick-shape-leaves-less", test_quick);
+    g_test_add_func("/wet/a-disk-that-spins-passes-straight-on", test_spin);
+    g_test_add_func("/wet/stains-know-how-far-their-sides-are", test_sides);
     g_test_add_func("/wet/what-rests-marks-nothing", test_rest);
     g_test_add_func("/wet/what-vanishes-leaves-less-than-what-recedes", test_vanish);
     g_test_add_func("/wet/fronts-go-with-a-shape-that-jumps", test_jump);
