@@ -51,9 +51,9 @@ bool fl_warn(const FlCaller *caller, GError **error, FlError code, const char *f
     return true;
 }
 
-double fl_elapsed(const FlCaller *caller)
+double fl_seconds_since(gint64 start)
 {
-    return (double)(g_get_monotonic_time() - caller->start) * 1e-6;
+    return (double)(g_get_monotonic_time() - start) * 1e-6;
 }
 
 void fl_parallel_error_keep(GError **first, GError *failure)

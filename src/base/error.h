@@ -43,8 +43,8 @@ void fl_note(const FlCaller *caller, const char *format, ...) G_GNUC_PRINTF(2, 3
 bool fl_warn(const FlCaller *caller, GError **error, FlError code, const char *format, ...)
     G_GNUC_PRINTF(4, 5);
 
-/** Seconds since the render began. */
-double fl_elapsed(const FlCaller *caller);
+/** Seconds since a time of g_get_monotonic_time(). */
+double fl_seconds_since(gint64 start);
 
 /** Moves `failure` (may be NULL) into *first, or frees it if there is one already. Any thread.
  */

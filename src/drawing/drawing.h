@@ -95,9 +95,9 @@ int fl_drawing_height(const FlDrawing *drawing);
 int fl_drawing_regions(const FlDrawing *drawing);
 const FlRegion *fl_drawing_region(const FlDrawing *drawing, int region);
 
-/** The paths, as keys, of all that the files refer to: pictures, drawings, style sheets, and the
- * fonts and folders of fonts for their text. */
-GHashTable *fl_drawing_linked_files(const FlDrawing *drawing);
+/** The paths, sorted, of all that the files refer to: pictures, drawings, style sheets, and the
+ * fonts and folders of fonts for their text. Returns: ends in NULL; to be freed with g_free(). */
+const char **fl_drawing_linked_files(const FlDrawing *drawing);
 
 /** A sentence about the frames that are held or skipped since they cannot be read or drawn; to be
  * freed. NULL: all frames were read. */

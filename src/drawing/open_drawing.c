@@ -158,7 +158,7 @@ static bool tell_reading(void *data, const FlSequence *sequence, int done)
                                  .frame = sequence->number[done - 1],
                                  .done = done,
                                  .total = sequence->n,
-                                 .elapsed_s = fl_elapsed(caller),
+                                 .elapsed_s = fl_seconds_since(caller->start),
                                  .remaining_s = -1};
     return caller->progress(&progress, caller->data);
 }

@@ -78,9 +78,17 @@ int fl_drawing_limbs(const FlDrawing *drawing, int region, int frame, FlLimb *li
     return n;
 }
 
-GHashTable *fl_drawing_linked_files(const FlDrawing *drawing)
+static int by_name(const void *a, const void *b)
 {
-    return drawing->files;
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+const char **fl_drawing_linked_files(const FlDrawing *drawing)
+{
+    guint n;
+    const char **paths = (const char **)g_hash_table_get_keys_as_array(drawing->files, &n);
+    qsort(paths, n, sizeof *paths, by_name);
+    return paths;
 }
 
 char *fl_drawing_left_out(const FlDrawing *drawing, FlMissing missing)

@@ -22,11 +22,6 @@ static void add_style(FlFacts *facts, FlInputs *inputs, const char *path)
     fl_facts_add_digest(facts, name, fl_inputs_digest_of_style(inputs, path));
 }
 
-static int by_name(const void *a, const void *b)
-{
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
 static bool frames_share_a_file(const FlDrawing *drawing)
 {
     return fl_drawing_frames(drawing) > 1 &&
@@ -37,15 +32,12 @@ static bool frames_share_a_file(const FlDrawing *drawing)
 static void add_drawings(FlFacts *facts, const FlPlan *plan)
 {
     const FlDrawing *drawing = plan->shapes.drawing;
-    guint n;
-    g_autofree const char **linked =
-        (const char **)g_hash_table_get_keys_as_array(fl_drawing_linked_files(drawing), &n);
+    g_autofree const char **linked = fl_drawing_linked_files(drawing);
     fl_facts_add_number(facts, "the number of frames", fl_drawing_frames(drawing));
     for (int f = 0; f < fl_drawing_frames(drawing); f++)
         add_file(facts, plan->inputs, fl_drawing_file(drawing, f));
-    qsort(linked, n, sizeof *linked, by_name);
-    for (guint k = 0; k < n; k++)
-        add_file(facts, plan->inputs, linked[k]);
+    for (const char **path = linked; *path; path++)
+        add_file(facts, plan->inputs, *path);
     if (frames_share_a_file(drawing)) // they may be moments of it
         fl_facts_add_number(facts, "fps", plan->out.fps);
 }

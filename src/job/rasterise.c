@@ -126,7 +126,7 @@ static bool tell_masks(Pass *pass, int frame, GError **error)
                                  .frame = fl_drawing_number(shapes->drawing, frame),
                                  .done = (int)(pass->before * frames + pass->share * done),
                                  .total = frames,
-                                 .elapsed_s = fl_elapsed(caller),
+                                 .elapsed_s = fl_seconds_since(caller->start),
                                  .remaining_s = -1};
     if (caller->progress(&progress, caller->data))
         return true;

@@ -72,7 +72,7 @@ static bool is_kept(const char *folder)
 static bool tell(int frame, int n_frames, void *data)
 {
     const FlCaller *caller = data;
-    const double elapsed_s = fl_elapsed(caller);
+    const double elapsed_s = fl_seconds_since(caller->start);
     const FlProgress progress = {.stage = "style",
                                  .region_index = -1,
                                  .frame = frame,

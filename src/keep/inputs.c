@@ -123,14 +123,11 @@ void fl_inputs_add_style(FlInputs *inputs, const char *folder)
 
 void fl_inputs_add_drawing(FlInputs *inputs, const FlDrawing *drawing)
 {
-    guint n;
-    g_autofree const char **linked =
-        (const char **)g_hash_table_get_keys_as_array(fl_drawing_linked_files(drawing), &n);
+    g_autofree const char **linked = fl_drawing_linked_files(drawing);
     for (int f = 0; f < fl_drawing_frames(drawing); f++)
         (void)list(inputs, fl_drawing_file(drawing, f));
-    qsort(linked, n, sizeof *linked, by_name);
-    for (guint k = 0; k < n; k++)
-        fl_inputs_add(inputs, linked[k]);
+    for (const char **path = linked; *path; path++)
+        fl_inputs_add(inputs, *path);
 }
 
 void fl_inputs_add_frames(FlInputs *inputs, const FlDrawing *drawing, const char *pattern,

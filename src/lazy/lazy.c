@@ -1,6 +1,7 @@
 #include "lazy/lazy.h"
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/rng.h"
 #include "lazy/fluid_exemplar.h"
 #include "lazy/lazy_state.h"
@@ -434,7 +435,7 @@ static bool run_levels(FlLazy *lazy, FlFrameStats *stats, GError **error)
         const gint64 start = g_get_monotonic_time();
         if (!run_level(lazy, l, &stats->level[l], error))
             return false;
-        stats->level[l].seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
+        stats->level[l].seconds = fl_seconds_since(start);
         stats->seconds_search += stats->level[l].seconds;
     }
     return true;

@@ -15,11 +15,6 @@
 
 #define WET_IN_DRAFTS 3 // frames from which wet paper is known
 
-static double seconds_since(gint64 start)
-{
-    return (double)(g_get_monotonic_time() - start) * 1e-6;
-}
-
 bool fl_frames_tell(const FlFrames *frames, const char *stage, int done, double frame_s,
                     GError **error)
 {
@@ -33,12 +28,12 @@ bool fl_frames_tell(const FlFrames *frames, const char *stage, int done, double 
                            .done = made,
                            .total = total,
                            .share = (double)made / MAX(total, 1),
-                           .elapsed_s = seconds_since(frames->start),
+                           .elapsed_s = fl_seconds_since(frames->start),
                            .frame_s = frame_s,
                            .remaining_s = -1};
     const int painted = done - frames->before;
     if (painted > 0)
-        progress.remaining_s = seconds_since(frames->first_frame) / painted * (total - made);
+        progress.remaining_s = fl_seconds_since(frames->first_frame) / painted * (total - made);
     if (!o->progress || o->progress(&progress, o->data))
         return true;
     g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted after %d of %d frames; %s",
@@ -296,7 +291,7 @@ static bool compose(FlFrames *frames, int frame, int next, bool marks, FlComposi
     if (composed && frames->drawn != shown)
         start_drawing(frames, shown);
     const bool painted = paint(frames, shown, error);
-    *paint_s += seconds_since(start);
+    *paint_s += fl_seconds_since(start);
     trim(plan); // painting and composing cannot use each other's freed memory
     if (!fl_task_wait(&frames->drawing, painted ? error : NULL) || !painted ||
         fl_stop_asked(&frames->painters.shapes.stop, error))

@@ -1,6 +1,7 @@
 #include "render/painter.h"
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/rng.h"
 #include "job/paint_files.h"
 #include <math.h>
@@ -322,7 +323,7 @@ bool fl_painter_frame(FlPainter *painter, int frame, GError **error)
         !fl_loop_blend(&painter->loop, index, &painter->result, error) ||
         !fl_painter_show_guides(painter, error))
         return false;
-    painter->result.seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
+    painter->result.seconds = fl_seconds_since(start);
     return true;
 }
 

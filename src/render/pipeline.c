@@ -26,11 +26,6 @@ typedef struct Pipeline {
     double write_s;       // time that this took
 } Pipeline;
 
-static double seconds_since(gint64 start)
-{
-    return (double)(g_get_monotonic_time() - start) * 1e-6;
-}
-
 /* ---- a frame --------------------------------------------------------------------------------- */
 
 /* The task `writing`: the files of a frame, and then the state that follows it. */
@@ -41,7 +36,7 @@ static bool write_finished(void *data, GError **error)
     const bool done = fl_frame_writer_frame(&pipeline->writer, &pipeline->finished,
                                             pipeline->finished_frame, error) &&
                       fl_resume_save(&pipeline->resume, error);
-    pipeline->write_s = seconds_since(start);
+    pipeline->write_s = fl_seconds_since(start);
     return done;
 }
 
@@ -96,7 +91,7 @@ static bool render_frame(Pipeline *pipeline, int frame, GError **error)
     const int next = frame + 1 < pipeline->frames.plan->out.end ? frame + 1 : -1;
     if (!fl_frames_make(&pipeline->frames, frame, next, &composite, &paint_s, error))
         return false;
-    const double compose_s = seconds_since(start) - paint_s;
+    const double compose_s = fl_seconds_since(start) - paint_s;
     if (!take_state(pipeline, frame, error))
         return false;
     if (beside)
@@ -109,7 +104,7 @@ static bool render_frame(Pipeline *pipeline, int frame, GError **error)
     else if (!inspect_frame(pipeline, paint_s, compose_s, error))
         return false;
     fl_store_warn(pipeline->frames.plan->cache);
-    return fl_frames_tell(&pipeline->frames, "paint", frame + 1, seconds_since(start), error);
+    return fl_frames_tell(&pipeline->frames, "paint", frame + 1, fl_seconds_since(start), error);
 }
 
 /* ---- the notes at its end ----------------------------------------------------------------------
@@ -294,7 +289,7 @@ static bool paint_before(Pipeline *pipeline, GError **error)
     const gint64 start = g_get_monotonic_time();
     if (!fl_frames_lead_in(frames, error))
         return false;
-    pipeline->stats.paint_s = seconds_since(start);
+    pipeline->stats.paint_s = fl_seconds_since(start);
     return restore_state(pipeline, error);
 }
 
@@ -303,7 +298,7 @@ static bool prepare(Pipeline *pipeline, GError **error)
 {
     FlFrames *frames = &pipeline->frames;
     const FlPlan *plan = frames->plan;
-    const double read_s = seconds_since(frames->start);
+    const double read_s = fl_seconds_since(frames->start);
     if (!fl_frames_check(frames, error) || !fl_resume_init(&pipeline->resume, plan, error) ||
         !fl_frame_writer_init(&pipeline->writer, &plan->out, &plan->shapes, &pipeline->resume,
                               frames->background.opaque,
@@ -324,7 +319,7 @@ static bool prepare(Pipeline *pipeline, GError **error)
     pipeline->writer.paper = frames->sheet;
     frames->first_frame = g_get_monotonic_time();
     pipeline->stats.read_s = read_s;
-    pipeline->stats.guides_s = seconds_since(frames->start) - read_s - pipeline->stats.paint_s;
+    pipeline->stats.guides_s = fl_seconds_since(frames->start) - read_s - pipeline->stats.paint_s;
     return true;
 }
 
@@ -374,7 +369,7 @@ static bool dry_run(Pipeline *pipeline, GError **error)
         if (!fl_frames_make(&pipeline->frames, k * plan->shapes.hold, -1, &composite, &paint_s,
                             error))
             return false;
-        frame_s = seconds_since(start);
+        frame_s = fl_seconds_since(start);
     }
     tell_dry_run(plan, frame_s);
     return true;
