@@ -322,7 +322,9 @@ static char *compute(Cascade *c, const char *name, const FlCssProperty *property
     const char *keyword = resolve_keyword(property, value);
     if (keyword)
         return g_strdup(keyword);
-    if (strcmp(name, "stop-color") == 0 && strchr(value, '(') && !strchr("rh", *value))
+    if (strcmp(name, "stop-color") == 0 &&
+        (g_str_has_prefix(value, "ok") || g_str_has_prefix(value, "lab(") ||
+         g_str_has_prefix(value, "lch(")))
         warn(c, name, value, "mixes in Oklab in a browser, which cannot be drawn");
     char *colour = property->kind == FL_CSS_PAINT ? fl_css_colour_with(value, style->colour) : NULL;
     switch (property->kind) {
