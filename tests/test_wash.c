@@ -406,11 +406,11 @@ static void dots_and_lines_have_none(void)
 }
 
 /* Where calm is, the step between lines goes; elsewhere it stays, and at the rim everywhere. */
-static void a_calm_wash_keeps_rims_and_some_marks(void)
+static void a_calm_wash_keeps_rims(void)
 {
     const FlWashStyle calm = {.wash = 1, .calm = 1};
     g_autofree Tones *tones = lay_still(DISC, &calm, 200);
-    int middle = 0, lost = 0, found = 0, rim = 0;
+    int middle = 0, lost = 0, rim = 0;
     for (int y = 11; y < H - 11; y++)
         for (int x = 60; x < W - 60; x++) {
             const double depth = 140 - hypot(x - 200, y - 150);
@@ -420,12 +420,11 @@ static void a_calm_wash_keeps_rims_and_some_marks(void)
                 g_assert_cmpfloat(step, >, .3f); // ln(1224 / 824) is .4
             }
             if (depth > 20)
-                middle++, lost += step<.1f, found += step> .3f;
+                middle++, lost += step < .1f;
         }
-    g_test_message("of %d px %d are lost, %d found", middle, lost, found);
+    g_test_message("of %d px %d are lost", middle, lost);
     g_assert_cmpint(rim, >, 500);
-    g_assert_cmpint(lost, >, middle / 3);
-    g_assert_cmpint(found, >, middle / 20);
+    g_assert_cmpint(lost, >, middle * 9 / 10);
 }
 
 static void a_heart_is_light(void)
@@ -647,8 +646,8 @@ int main(int argc, char **argv)
                     touching_shapes_of_one_fill_are_one_wash);
     g_test_add_func("/wash/parts-that-move-apart-are-mixed", parts_that_move_apart_are_mixed);
     g_test_add_func("/wash/dots-and-lines-have-none", dots_and_lines_have_none);
-    g_test_add_func("/wash/a-calm-wash-keeps-rims-and-some-marks",
-                    a_calm_wash_keeps_rims_and_some_marks);
+    g_test_add_func("/wash/a-calm-wash-keeps-rims",
+                    a_calm_wash_keeps_rims);
     g_test_add_func("/wash/a-heart-is-light", a_heart_is_light);
     g_test_add_func("/wash/threads-and-parts-do-not-matter", threads_and_parts_do_not_matter);
     g_test_add_func("/contacts/wet-fields-run-into-each-other", wet_fields_run_into_each_other);

@@ -54,7 +54,7 @@ static void put_together(const FlWashField *field)
         wash->plane[FL_WASH_LINES][i] = lines;
         wash->plane[FL_WASH_TIDES][i] *= lines;
         wash->plane[FL_WASH_BLOOMS][i] *= lines;
-        wash->plane[FL_WASH_CALM][i] *= calm * (1 - wash->plane[FL_WASH_CRISP][i]);
+        wash->plane[FL_WASH_CALM][i] *= calm;
     }
     fl_wash_find_tones(wash, tones, hues);
     fl_field_centre(field, tones, breadth, tone);

@@ -35,7 +35,7 @@ typedef struct FlWashStyle {
     float tide;   // of drying lines, 0..2
     float pool;   // of paint that gathers at lower edges, 0..2
     float blooms; // of blooms, 0..2
-    float calm;   // share of the recording's unevenness that is lost in quiet places, 0..1
+    float calm;   // share of the recording's unevenness that is lost behind the rim, 0..1
     float heart;  // of a lighter middle, 0..1
     float hue;    // wander between two pigments, CIE76, 0..12
 } FlWashStyle;
