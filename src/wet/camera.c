@@ -5,7 +5,7 @@
 #include <math.h>
 
 #define STRIDE 6     // cells between places at which the motion is looked at
-#define STEADY 2e-4  // less turn or growth a frame is none: .05 cells at the page's edge
+#define STEADY 2e-4  // turn or growth a frame below which a camera only pans: .05 cells at the edge
 #define MISFIT 0.5   // cells, root of mean squares: more is no motion of a camera
 #define FASTEST 0.25 // turn or growth in a frame beyond which it is a cut
 
@@ -66,7 +66,7 @@ static double solve(const Fit *fit, const double sums[3], double out[3])
     return out[0] * sums[0] + out[1] * sums[1] + out[2] * sums[2];
 }
 
-/** The motion as an affine map. Returns: false if it turns and grows nowhere, or is none. */
+/** The motion as an affine map. Returns: false if it only pans, or fits badly. */
 static bool fit_motion(const float *motion, FlRect page, FlAffine *came)
 {
     const Fit fit = add_up(motion, page);

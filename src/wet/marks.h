@@ -33,7 +33,7 @@ void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
                         GArray *fronts);
 
 /** Adds marks that take the fronts of the frame before from the paper where the shape has jumped
- * away: what vanishes leaves no outline. */
+ * away: a shape that vanishes leaves no outline. */
 void fl_marks_lose_fronts(const FlWetShape *shape, const FlMovingEdge *edge, const GArray *fronts,
                           GArray *marks);
 

@@ -268,7 +268,7 @@ static void find_kept(const FlWetShape *shape, float pace_before, FlEdgePoint *p
 }
 
 /** The absorbance of the paint seen at a place in rect in the frame before: the region's, or that
- * of a shape above it. Returns: false if there was none. */
+ * of a shape above it. Returns: false if both are absent. */
 static bool ink_at(const FlWetShape *shape, float x, float y, float ink[3])
 {
     const FlLaid *laid = shape->laid;

@@ -248,7 +248,7 @@ static void add_ink(FlWetCell *cell, float more, const float ink[3], float granu
     cell->granulation = between(cell->granulation, granulation, share);
 }
 
-/** Paint that passes takes up what lay in its way. A cell has one stain, the stronger: the weaker
+/** Paint that passes takes up the stain in its way. A cell has one stain, the stronger: the weaker
  * leaves no trace. */
 static void stain_cell(const FlWetSheet *sheet, const FlFrontStyle *style, const FlStainMark *mark,
                        FlWetCell *cell)
