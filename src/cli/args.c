@@ -45,8 +45,10 @@ static gboolean read_option(const char *name, const char *value, gpointer data, 
     FlArgs *args = data;
     const FlOption *option = option_named(name);
     g_autofree char *configs = NULL;
-    if (strcmp(option->name, "config") == 0 && args->render.config)
-        value = configs = g_strconcat(args->render.config, ";", value, NULL);
+    if (strcmp(option->name, "config") == 0 && args->render.config) {
+        configs = g_strconcat(args->render.config, ";", value, NULL);
+        value = configs;
+    }
     if (option->type == FL_OPTION_FLAG)
         value = "on";
     if (option->type == FL_OPTION_SWITCH) {
