@@ -182,7 +182,7 @@ static void mend_clip(xmlNode *node, GHashTable *ids)
 /* ---- symbols --------------------------------------------------------------------------------- */
 
 /** librsvg cuts a <symbol> off at its viewBox, a browser at the place where <use> shows it: it is
- * copied to that place. A cycle, or what is too large, is left for fl_document_normalise() to tell.
+ * copied to that place. A cycle is left for fl_document_normalise() to tell.
  */
 static void mend_use(xmlNode *use, GHashTable *ids, int *n_copied)
 {
@@ -244,9 +244,10 @@ static void mend(xmlNode *node, GHashTable *ids, int *n_shadows, int *n_copied)
     }
 }
 
-void fl_document_mend(xmlDoc *doc)
+bool fl_document_mend(xmlDoc *doc, const char *path, GError **error)
 {
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
     int n_shadows = 0, n_copied = 0;
     mend(xmlDocGetRootElement(doc), ids, &n_shadows, &n_copied);
+    return fl_limit_check(FL_LIMIT_ELEMENTS, n_copied, path, error);
 }

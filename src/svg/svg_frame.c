@@ -61,7 +61,8 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
     svg->files = g_ptr_array_new_with_free_func(g_free);
     const double seconds = options->from == FL_FRAMES_TIME ? options->seconds : NAN;
     fl_cascade(svg->doc, path, number, seconds, NULL, svg->files, warnings);
-    fl_document_mend(svg->doc);
+    if (!fl_document_mend(svg->doc, path, error))
+        return NULL;
     fl_lint(svg->doc, path, number, warnings);
     if (!fl_images_check(svg->doc, path, number, svg->files, warnings, error))
         return NULL;
