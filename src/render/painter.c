@@ -360,11 +360,10 @@ int fl_painter_start_at(FlPainter *painter, int frame, GError **error)
     if (painter->origin != FL_FROM_ENGINE || painter->plan->loops || painter->next == k + 1)
         return fl_painter_seek(painter, frame, error);
     reuse->drafts = true;
-    if (painter->next == k || fl_reuse_has(reuse, k))
-        painter->next = k;
-    else if (k > 0 && fl_reuse_has(reuse, k - 1))
+    const bool known = painter->next == k || fl_reuse_has(reuse, k);
+    if (!known && k > 0 && fl_reuse_has(reuse, k - 1))
         painter->next = k - 1;
-    else if (restart(painter, error))
+    else if (known || restart(painter, error))
         painter->next = k;
     else
         return -2;

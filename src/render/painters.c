@@ -144,8 +144,7 @@ static bool same_regions(FlPainters before, const FlShapes *shapes)
 static void take_painters(FlPainters *painters, const FlShapes *shapes)
 {
     const FlPainters before = *painters;
-    const bool same =
-        before.painter && before.shapes.masks == shapes->masks && same_regions(before, shapes);
+    const bool same = before.shapes.masks == shapes->masks && same_regions(before, shapes);
     *painters = (FlPainters){.n = shapes->n_painted, .n_painted = before.n_painted};
     painters->painter = g_new0(FlPainter *, MAX(shapes->n_painted, 1));
     painters->painted = g_new0(const FlPaintedRegion *, MAX(shapes->n_painted, 1));
