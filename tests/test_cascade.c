@@ -343,6 +343,7 @@ static void gaps_of_librsvg_are_filled(void)
     assert_value("<path id='a' style='--c: ;stroke:var(--c, red)'/>", "stroke", "inherit");
     assert_value("<feOffset id='a' dx='5%'/>", "dx", "");
     assert_value("<symbol id='a'/>", "overflow", "hidden");
+    assert_value("<marker id='a' refX='center'/>", "refX", "");
     g_autoptr(FlSvg) svg =
         open_svg_of("<filter><feFlood/><feDropShadow dx='1' result='r'/></filter>"
                     "<linearGradient x2='0'><stop offset='.123'/><stop/></linearGradient>"

@@ -203,6 +203,12 @@ static void mend_use(xmlNode *use, GHashTable *ids, int *n_copied)
 
 static void mend_words(xmlNode *node)
 {
+    static const char *const places[] = {"refX", "refY"};
+    for (int i = 0; fl_is(node, "marker") && i < 2; i++) {
+        g_autoptr(xmlChar) text = fl_attribute(node, places[i]);
+        if (text && g_ascii_isalpha(*text)) // "center", for which librsvg drops all attributes
+            fl_set_attribute(node, places[i], NULL);
+    }
     g_autofree char *overflow = fl_property(node, "overflow");
     if (fl_is(node, "symbol") && !overflow)
         fl_set_attribute(node, "overflow", "hidden");   // a browser's own style sheet says so
