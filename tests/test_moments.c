@@ -180,6 +180,9 @@ static void css_has_its_values(void)
     assert_at(CSS("@keyframes k{from{transform:translateX(10px)}to{transform:matrix(1,0,0,1,20,0)}}"
                   "#a{animation:k 1s linear}"),
               .5, "transform", "matrix(1 0 0 1 15 0)");
+    assert_at(CSS("@keyframes k{0%{opacity:0;animation-timing-function:ease}50%{opacity:1}"
+                  "100%{opacity:0}}#a{animation:k 2s linear}"),
+              1.25, "opacity", "0.75");
     assert_at(CSS("@property --v{syntax:'&lt;number>';initial-value:1}@keyframes k{to{--v:3}}"
                   "#a{opacity:calc(var(--v) / 4);animation:k 1s linear}"),
               .5, "opacity", "0.5");

@@ -252,7 +252,7 @@ static char *substituted(const char *value, const FlCssContext *context)
 static char *between(const GArray *frames, const char *property, double p, const char *timing,
                      const char *underlying, bool typed, const FlCssContext *context)
 {
-    const char *from = underlying, *to = underlying;
+    const char *from = underlying, *to = underlying, *usual = timing;
     double start = 0, end = 1;
     bool has_end = false;
     for (guint i = 0; i < frames->len; i++) {
@@ -263,7 +263,7 @@ static char *between(const GArray *frames, const char *property, double p, const
         if (frame->share <= p && frame->share >= start) {
             const char *own = find(frame->declarations, "animation-timing-function");
             from = value, start = frame->share;
-            timing = own ? own : timing;
+            timing = own ? own : usual;
         }
         if (frame->share > p && (!has_end || frame->share < end)) {
             to = value, end = frame->share;
