@@ -62,7 +62,6 @@ static void mend_shadow(xmlNode *node, int number)
     fl_set_attribute(cut, "operator", "in");
     fl_set_attribute(cut, "in2", place);
     xmlNodeSetName(node, (const xmlChar *)"feMerge");
-    xmlNodeSetContent(node, NULL);
     xmlNewChild(node, node->ns, (const xmlChar *)"feMergeNode", NULL);
     fl_set_attribute(xmlNewChild(node, node->ns, (const xmlChar *)"feMergeNode", NULL), "in", in);
 }
@@ -70,13 +69,13 @@ static void mend_shadow(xmlNode *node, int number)
 /** Drops numbers that cannot be read, for which librsvg would leave out all that is filtered. */
 static void mend_numbers(xmlNode *step)
 {
-    static const char *const names[] = {"dx",           "dy",     "stdDeviation", "scale",
-                                        "surfaceScale", "radius", "baseFrequency"};
+    static const char *const names[] = {"dx",           "dy",     "scale",        "surfaceScale",
+                                        "stdDeviation", "radius", "baseFrequency"};
     for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
         g_autoptr(xmlChar) text = fl_attribute(step, names[i]);
         const char *s = (const char *)text;
-        const bool length = i > 1 && i != 3 && i != 4; // which is not negative
-        if (s && (!*s || s[strspn(s, "0123456789+-.eE ,\t\r\n")] || (length && *s == '-')))
+        const bool signless = i >= 4;
+        if (s && (!*s || s[strspn(s, "0123456789+-.eE ,\t\r\n")] || (signless && *s == '-')))
             fl_set_attribute(step, names[i], NULL);
     }
 }
@@ -102,16 +101,11 @@ static void mend_gradient(xmlNode *node)
         return;
     if (!linear) // librsvg draws nothing without a radius
         fl_set_attribute(node, "r", "1");
-    xmlNode *last = node->last;
-    while (last && !fl_is(last, "stop"))
-        last = last->prev;
-    for (xmlNode *stop = node->children, *next; stop && last; stop = next) {
-        next = stop->next;
-        if (stop == last)
-            continue;
-        xmlUnlinkNode(stop);
-        xmlFreeNode(stop);
-    }
+    xmlNode *stop = node->last;
+    while (stop && !fl_is(stop, "stop"))
+        stop = stop->prev;
+    while (stop && (stop = element_beside(stop, true)))
+        xmlNodeSetName(stop, (const xmlChar *)"desc"); // kept, since its id may be referred to
 }
 
 /* ---- lists of points ------------------------------------------------------------------------- */
