@@ -329,6 +329,40 @@ static void what_use_shows_has_the_variables_of_use(void)
     g_assert_cmpint(fl_warnings_count(warnings), ==, 1); // it shows itself
 }
 
+#define PIXEL "data:image/gif;base64,R0lGODlhAQABAAAAACwAAAAAAAQABAAA="
+
+/** The start of a drawing in a drawing, as librsvg gets it; to be freed. */
+static char *embedded(const char *root)
+{
+    g_autofree char *content =
+        g_strdup_printf("<image id='a' href='data:image/svg+xml,%s'/>", root);
+    g_autofree char *href = computed(content, "a", "href", NULL);
+    gsize bytes;
+    g_assert_true(g_str_has_prefix(href, "data:image/svg+xml;base64,"));
+    g_autofree char *text = (char *)g_base64_decode(strchr(href, ',') + 1, &bytes);
+    return g_strndup(text, bytes);
+}
+
+static void images_keep_their_shape(void)
+{
+    static const char *const roots[][2] = {
+        {"width='100%25' height='100%25' viewBox='0 0 20 10'", "width=\"1000\" height=\"500\""},
+        {"width='20' viewBox='0 0 20 10'", "width=\"1000\""},
+        {"width='2cm' height='20mm'", "viewBox=\"0 0 75.5905512 75.5905512\""},
+        {"width='20'", "width=\"20\"/>"}};
+    for (size_t i = 0; i < G_N_ELEMENTS(roots); i++) {
+        g_autofree char *root =
+            g_strdup_printf("&lt;svg xmlns=\"http://www.w3.org/2000/svg\" %s/&gt;", roots[i][0]);
+        g_auto(GStrv) parts = g_strsplit(root, "'", -1);
+        g_autofree char *quoted = g_strjoinv("\"", parts), *text = embedded(quoted);
+        g_test_message("%s", text);
+        g_assert_nonnull(strstr(text, roots[i][1]));
+    }
+    assert_value("<image id='a' width='2cm' href='" PIXEL "'/>", "height", "75.5905512");
+    assert_value("<image id='a' width='auto' height='9' href='" PIXEL "'/>", "width", "9");
+    assert_value("<image id='a' width='auto' href='" PIXEL "'/>", "height", "");
+}
+
 /** What librsvg leaves out and a browser draws. */
 static void gaps_of_librsvg_are_filled(void)
 {
@@ -403,6 +437,7 @@ int main(int argc, char **argv)
     TEST(colours_are_those_of_a_browser);
     TEST(media_ask_about_a_screen);
     TEST(what_use_shows_has_the_variables_of_use);
+    TEST(images_keep_their_shape);
     TEST(gaps_of_librsvg_are_filled);
     TEST(each_kind_that_is_left_out_is_told_once);
     TEST(hostile_sheets_come_to_an_end);

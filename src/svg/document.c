@@ -115,17 +115,21 @@ bool fl_view_box(const xmlNode *node, double box[4])
 {
     g_autoptr(xmlChar) text = fl_attribute(node, "viewBox");
     const char *s = (const char *)text;
+    double v[4];
     for (int k = 0; k < 4; k++) {
         char *end = NULL;
         if (!s)
             return false;
         s += strspn(s, " \t\r\n\f,");
-        box[k] = g_ascii_strtod(s, &end);
+        v[k] = g_ascii_strtod(s, &end);
         if (end == s)
             return false;
         s = end;
     }
-    return box[2] > 0 && box[3] > 0;
+    if (!(v[2] > 0 && v[3] > 0))
+        return false;
+    memcpy(box, v, sizeof v);
+    return true;
 }
 
 static double mebibytes(double bytes)

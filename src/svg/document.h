@@ -50,7 +50,8 @@ xmlChar *fl_attribute(const xmlNode *node, const char *name);
 /** Sets an attribute without a namespace; removes it if the value is NULL or "". */
 void fl_set_attribute(xmlNode *node, const char *name, const char *value);
 
-/** Reads viewBox: x, y, width and height. Returns: false if it is missing, damaged or empty. */
+/** Reads viewBox: x, y, width and height. Returns: false if it is missing, damaged or empty; *box
+ * stays as it is then. */
 bool fl_view_box(const xmlNode *node, double box[4]);
 
 /** An attribute with any prefix, be it declared or not, trimmed; NULL if absent. g_free(). */

@@ -68,16 +68,36 @@ static const char *kind_of(const guint8 *data, gsize bytes)
     return NULL;
 }
 
+/** A side in px; 0 if it is missing, a share of something else or a word. */
+static double side_of(const xmlNode *node, const char *name)
+{
+    static const FlCssUnits units = {.font_size = 16, .root_font_size = 16};
+    g_autoptr(xmlChar) text = fl_attribute(node, name);
+    double px = 0;
+    return text && fl_css_number((const char *)text, &units, 0, &px) && px > 0 ? px : 0;
+}
+
+static void set_side(xmlNode *node, const char *name, double px)
+{
+    g_autofree char *text = fl_css_number_text(px);
+    fl_set_attribute(node, name, text);
+}
+
+static bool is_auto(const xmlNode *node, const char *name)
+{
+    g_autoptr(xmlChar) text = fl_attribute(node, name);
+    return !text || xmlStrEqual(text, (const xmlChar *)"auto");
+}
+
 /** Computes the side of an <image> that is not given from the other one. */
 static void complete_size(xmlNode *node, const int size[2])
 {
-    g_autoptr(xmlChar) width = fl_attribute(node, "width"), height = fl_attribute(node, "height");
-    const char *text = (const char *)(width ? width : height);
-    if (!fl_is(node, "image") || !width == !height || strchr(text, '%') || size[0] < 1)
+    const bool wide = is_auto(node, "width");
+    const double side = side_of(node, wide ? "height" : "width");
+    if (!fl_is(node, "image") || wide == is_auto(node, "height") || side == 0 || size[0] < 1)
         return;
-    const double ratio = (double)size[0] / size[1], side = g_ascii_strtod(text, NULL);
-    g_autofree char *other = fl_css_number_text(width ? side / ratio : side * ratio);
-    fl_set_attribute(node, (width ? "height" : "width"), other);
+    const double ratio = (double)size[0] / size[1];
+    set_side(node, wide ? "width" : "height", wide ? side * ratio : side / ratio);
 }
 
 /** Has a node refer to a PNG instead of a WebP image, whose size has been checked. */
@@ -109,21 +129,19 @@ static char *unescape(const char *text)
 /** Gives a drawing many pixels, which librsvg makes before it scales it to its place. */
 static void enlarge(xmlNode *root)
 {
-    g_autoptr(xmlChar) width = fl_attribute(root, "width"), height = fl_attribute(root, "height");
-    const double sides[2] = {width ? g_ascii_strtod((char *)width, NULL) : 0,
-                             height ? g_ascii_strtod((char *)height, NULL) : 0};
+    const double sides[2] = {side_of(root, "width"), side_of(root, "height")};
     double box[4] = {0, 0, sides[0], sides[1]};
-    const bool has_box = fl_view_box(root, box), has_sides = sides[0] > 0 && sides[1] > 0;
-    const double *size = has_sides ? sides : box + 2, larger = fmax(size[0], size[1]);
-    if (!(larger > 0) || larger >= ENLARGED)
-        return;
+    const bool has_box = fl_view_box(root, box);
+    const double *size = sides[0] > 0 && sides[1] > 0 ? sides : box + 2;
+    if (!(size[0] > 0 && size[1] > 0))
+        return; // librsvg decides
+    const double scale = fmax(ENLARGED / fmax(size[0], size[1]), 1);
+    g_autofree char *width = fl_css_number_text(size[0]), *height = fl_css_number_text(size[1]);
     g_autofree char *whole = g_strdup_printf("0 0 %s %s", width, height);
     if (!has_box)
         fl_set_attribute(root, "viewBox", whole);
-    for (int i = 0; i < 2; i++) {
-        g_autofree char *text = fl_css_number_text(size[i] * ENLARGED / larger);
-        fl_set_attribute(root, (i ? "height" : "width"), text);
-    }
+    set_side(root, "width", size[0] * scale);
+    set_side(root, "height", size[1] * scale);
 }
 
 /** Puts a drawing into the drawing, read as any other: librsvg gets its plain SVG. */
