@@ -299,8 +299,9 @@ static char *without_origin(const char *name, const char *arguments, int depth)
         g_string_append_len(out, number ? number : s, number ? -1 : (gssize)n);
         s += n;
     }
+    g_autofree char *alpha = fl_css_number_text(from.alpha);
     if (!strchr(rest, '/'))
-        g_string_append_printf(out, " / %g", from.alpha);
+        g_string_append_printf(out, " / %s", alpha);
     return g_string_free(out, FALSE);
 }
 

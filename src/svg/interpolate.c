@@ -213,8 +213,8 @@ char *fl_interpolate(const char *a, const char *b, double p)
 {
     double ca[4], cb[4], distance;
     if (is_modern(a) || is_modern(b)) {
-        g_autofree char *mix =
-            g_strdup_printf("color-mix(in oklab, %s, %s %.6g%%)", a, b, CLAMP(p, 0, 1) * 100);
+        g_autofree char *share = fl_css_number_text(CLAMP(p, 0, 1) * 100);
+        g_autofree char *mix = g_strdup_printf("color-mix(in oklab, %s, %s %s%%)", a, b, share);
         char *colour = fl_css_colour(mix);
         if (colour)
             return colour;
