@@ -171,7 +171,8 @@ static bool apply(const char *name, const double *v, int n, double *value)
     else if (IS("sign", one))
         *value = (v[0] > 0) - (v[0] < 0);
     else if (IS("round", one || two || n == 3)) {
-        const int first = n == 3, way = first ? (int)v[0] : 0;
+        const int first = n == 3;
+        const double way = first ? v[0] : 0;
         const double step = one ? 1 : v[first + 1], at = v[first] / step;
         *value = step * (way == 0   ? floor(at + .5)
                          : way == 1 ? ceil(at)

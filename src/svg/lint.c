@@ -183,22 +183,24 @@ static void check_text(const Lint *lint, const xmlNode *node)
         warn(lint, node, "textLength is left out: the text has its own width");
 }
 
+static bool has_value(const xmlNode *node, const char *property, const char *wanted)
+{
+    g_autofree char *value = fl_property(node, property);
+    return value && strcmp(value, wanted) == 0;
+}
+
 /** Warns of values that librsvg leaves out. */
 static void check_values(const Lint *lint, const xmlNode *node)
 {
-    static const char *const sharp[] = {"pixelated", "crisp-edges", NULL};
-    const bool inside = node->parent && fl_is(node->parent, "clipPath");
     const bool mixes =
         fl_is(node, "mask") || g_str_has_suffix((const char *)node->name, "Gradient");
-    const char *name = mixes                  ? "color-interpolation"
-                       : fl_is(node, "image") ? "image-rendering"
-                                              : "clip-path";
-    g_autofree char *value = fl_property(node, name);
-    if (value && mixes && strcmp(value, "linearRGB") == 0)
+    if (mixes && has_value(node, "color-interpolation", "linearRGB"))
         warn(lint, node, "color-interpolation: linearRGB is left out: colours are those of sRGB");
-    else if (value && fl_is(node, "image") && g_strv_contains(sharp, value))
+    if (fl_is(node, "image") && (has_value(node, "image-rendering", "pixelated") ||
+                                 has_value(node, "image-rendering", "crisp-edges")))
         warn(lint, node, "image-rendering is left out: the image is smoothed");
-    else if (value && inside && name[0] == 'c' && !mixes && strcmp(value, "none") != 0)
+    g_autofree char *clip = fl_is(node->parent, "clipPath") ? fl_property(node, "clip-path") : NULL;
+    if (clip && strcmp(clip, "none") != 0)
         warn(lint, node, "the clip of a shape in a clip path is left out");
 }
 
