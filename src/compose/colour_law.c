@@ -268,9 +268,7 @@ static int32_t level_at(const FlColourCurve *curve, int c, int amount)
                          : thick_level(curve, c, more_than_one(amount, curve->knee));
 }
 
-/** The degree to which a fill counts as light paint on dark paper: by L*, since by luma magenta is
- * dark. */
-static int32_t light_share(const uint8_t fill[3], const uint8_t paper[3])
+int32_t fl_light_share(const uint8_t fill[3], const uint8_t paper[3])
 {
     const int64_t rise = lightness16_of(fill) - lightness16_of(paper);
     const int64_t u = CLAMP(rise - LIGHT_AT, 0, LIGHT_OVER) * 65536 / LIGHT_OVER;
@@ -279,7 +277,7 @@ static int32_t light_share(const uint8_t fill[3], const uint8_t paper[3])
 
 void fl_colour_law_init(FlColourLaw *law, const uint8_t fill[3], const uint8_t paper[3], int spread)
 {
-    law->light_share = light_share(fill, paper);
+    law->light_share = fl_light_share(fill, paper);
     if (law->light_share < 65536) {
         curve_init(&law->dark, fill, paper, DARKEST, spread);
         make_shade_pure(&law->dark); // light paint would clip to primaries

@@ -22,8 +22,12 @@ typedef struct FlColourCurve {
 typedef struct FlColourLaw {
     FlColourCurve dark;
     FlColourCurve light; // of the complements, 255 - level
-    int32_t light_share; // 0 … 65536: how far the paint is lighter than the paper
+    int32_t light_share; // fl_light_share()
 } FlColourLaw;
+
+/** The degree, 0 … 65536, to which a fill is light paint on dark paper: by L*, since by luma
+ * magenta is dark. */
+int32_t fl_light_share(const uint8_t fill[3], const uint8_t paper[3]);
 
 /**
  * An amount of 0 is the paper, of one (FL_AMOUNT_ONE) the fill, to within 2.5 in CIEDE2000: white

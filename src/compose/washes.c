@@ -1,6 +1,6 @@
-#include "base/colour_difference.h"
 #include "base/error.h"
 #include "base/rng.h"
+#include "compose/colour_law.h"
 #include "compose/wash_field.h"
 
 #include <math.h>
@@ -13,13 +13,8 @@
 /* 1 where more paint is darker; -1 where it is lighter, as of light paint on dark paper. */
 static float light_of(const FlWashField *field)
 {
-    const uint8_t *paper = field->input->background->paper;
     const uint8_t *fill = fl_fill_of_film(field->input, field->wash->painted);
-    const float levels[2][3] = {{paper[0], paper[1], paper[2]}, {fill[0], fill[1], fill[2]}};
-    float lab[2][3];
-    for (int k = 0; k < 2; k++)
-        fl_lab(levels[k], lab[k]);
-    return 1 - 2 * fl_smooth((lab[1][0] - lab[0][0] - 10) / 20);
+    return 1 - (float)fl_light_share(fill, field->input->background->paper) / 32768;
 }
 
 static void put_together(const FlWashField *field)
