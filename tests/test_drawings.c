@@ -80,12 +80,12 @@ static void gradients_go_over_into_skins(void)
     g_assert_no_error(error);
     for (int r = 0; r < fl_drawing_regions(drawing); r++) {
         const FlRegion *region = fl_drawing_region(drawing, r);
-        if (!g_str_equal(region->paint, "gradient")) {
-            g_assert_cmpstr(region->skin, ==, region->paint);
-            continue;
-        }
-        body += g_str_equal(region->skin, "#fdae5f"),
-            behind += g_str_equal(region->skin, "#b3865d");
+        g_assert_cmpint(region->skin, >=, 0);
+        const char *skin = fl_drawing_region(drawing, region->skin)->paint;
+        if (g_str_equal(region->paint, "gradient"))
+            body += g_str_equal(skin, "#fdae5f"), behind += g_str_equal(skin, "#b3865d");
+        else
+            g_assert_cmpstr(skin, ==, region->paint);
     }
     g_assert_cmpint(body, ==, 2);
     g_assert_cmpint(behind, ==, 1);

@@ -381,6 +381,28 @@ static void touching_shapes_of_one_fill_are_one_wash(void)
     g_assert_cmpfloat(step_at(b, 200), >, .1);
 }
 
+/* A gradient is mixed of the pigments of the body that it goes over into, unless a config gives it
+ * a colour. */
+static void a_gradient_has_the_fill_of_its_body(void)
+{
+    const char *const frames[] = {
+        "<linearGradient id='g'><stop stop-color='#fdae5f'/><stop offset='1' stop-color='#123'/>"
+        "</linearGradient><rect id='body' fill='#fdae5f' width='90' height='90'/>"
+        "<rect id='neck' fill='url(#g)' x='90' width='90' height='90'/>",
+        NULL};
+    const uint8_t body[] = {0xfd, 0xae, 0x5f};
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
+    const FlComposeInput input = {.drawing = drawing};
+    for (int r = 0; r < 2; r++) {
+        FlRegionSettings settings = {.colour = {1, 2, 3}};
+        const FlPaintedRegion painted = {.region = r, .settings = &settings};
+        g_assert_cmpmem(fl_fill_of_film(&input, &painted), 3, body, 3);
+        settings.has_colour = true;
+        g_assert_cmpmem(fl_fill_of_film(&input, &painted), 3, settings.colour, 3);
+    }
+}
+
 /* Parts of a fill that move apart: no line where one's wash passes into the other's. */
 static void parts_that_move_apart_are_mixed(void)
 {
@@ -647,10 +669,11 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/still-figures-do-not-change", still_figures_do_not_change);
     g_test_add_func("/wash/touching-shapes-of-one-fill-are-one-wash",
                     touching_shapes_of_one_fill_are_one_wash);
+    g_test_add_func("/wash/a-gradient-has-the-fill-of-its-body",
+                    a_gradient_has_the_fill_of_its_body);
     g_test_add_func("/wash/parts-that-move-apart-are-mixed", parts_that_move_apart_are_mixed);
     g_test_add_func("/wash/dots-and-lines-have-none", dots_and_lines_have_none);
-    g_test_add_func("/wash/a-calm-wash-keeps-rims",
-                    a_calm_wash_keeps_rims);
+    g_test_add_func("/wash/a-calm-wash-keeps-rims", a_calm_wash_keeps_rims);
     g_test_add_func("/wash/a-heart-is-light", a_heart_is_light);
     g_test_add_func("/wash/threads-and-parts-do-not-matter", threads_and_parts_do_not_matter);
     g_test_add_func("/contacts/wet-fields-run-into-each-other", wet_fields_run_into_each_other);

@@ -39,13 +39,15 @@ typedef struct FlComposeInput {
     FlLaid *laid;               // takes the frame's paint as it is laid; NULL: not needed
 } FlComposeInput;
 
-/** The fill of a region through the film, whatever it is in this frame, so that what follows from
- * it never changes; borrowed. */
+/** The fill of a region through the film, or that which its gradient goes over into: the same in
+ * all frames; borrowed. */
 static inline const uint8_t *fl_fill_of_film(const FlComposeInput *input,
                                              const FlPaintedRegion *painted)
 {
-    return painted->settings->has_colour ? painted->settings->colour
-                                         : fl_drawing_region(input->drawing, painted->region)->rgb;
+    const FlRegion *region = fl_drawing_region(input->drawing, painted->region);
+    if (painted->settings->has_colour)
+        return painted->settings->colour;
+    return region->skin >= 0 ? fl_drawing_region(input->drawing, region->skin)->rgb : region->rgb;
 }
 
 #endif

@@ -94,7 +94,7 @@ static FlColouring colouring_of(const FlLayerSources *sources, const FlPaintedRe
     const FlWash *wash = fl_wash_of_draw(sources->washes, r);
     if (!wash && t->palette == FL_PALETTE_DRAWING)
         return colouring;
-    const uint8_t *film = fl_fill_of_film(input, wash ? wash->painted : painted);
+    const uint8_t *film = fl_fill_of_film(input, painted);
     const FlMixture mixture = fl_mixture_of(film);
     for (int c = 0; c < 3 && t->palette == FL_PALETTE_PAINT; c++)
         colouring.fill[c] = (uint8_t)CLAMP(

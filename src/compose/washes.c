@@ -68,12 +68,12 @@ static float in_steps(float px)
 /* The side of a square that is as large as the shapes of a fill: the same in all frames. */
 static float size_of(const FlComposeInput *input, int region)
 {
-    const char *skin = fl_drawing_region(input->drawing, region)->skin;
+    const int skin = fl_drawing_region(input->drawing, region)->skin;
     float most = 0;
     for (int p = 0; p < input->n_painted; p++) {
         const FlPaintedRegion *other = input->painted[p];
-        const char *its = fl_drawing_region(input->drawing, other->region)->skin;
-        if (other->region == region || (skin && g_strcmp0(skin, its) == 0))
+        const int its = fl_drawing_region(input->drawing, other->region)->skin;
+        if (other->region == region || (skin >= 0 && its == skin))
             most = MAX(most, other->anchor.side);
     }
     return in_steps(fl_clamp(most / input->paper_px, 12, 600));
@@ -194,20 +194,18 @@ static int wash_of_region(FlWashes *washes, const FlComposeInput *input, int reg
     const FlPaintedRegion *painted = p >= 0 ? input->painted[p] : NULL;
     if (!painted || painted->from == FL_FROM_NOWHERE)
         return -1;
-    const FlRegion *own = fl_drawing_region(input->drawing, region);
+    const int skin = fl_drawing_region(input->drawing, region)->skin;
+    const char *shared = skin >= 0 ? fl_drawing_region(input->drawing, skin)->paint : painted->name;
     FlWash wash = {.painted = painted,
                    .style = style_of_region(input, p),
-                   .key = fl_key(input->seed, g_str_hash(own->skin ? own->skin : painted->name))};
+                   .key = fl_key(input->seed, g_str_hash(shared))};
     if (wash.style.wash <= 0 && wash.style.hue <= 0)
         return -1;
     const char *style = (const char *)&wash.style; // floats alone
     for (int w = 0; w < washes->n; w++)
         if (washes->wash[w].key == wash.key &&
-            memcmp((const char *)&washes->wash[w].style, style, sizeof wash.style) == 0) {
-            if (own->paint[0] == '#') // not of a part that goes over into others
-                washes->wash[w].painted = painted;
+            memcmp((const char *)&washes->wash[w].style, style, sizeof wash.style) == 0)
             return w;
-        }
     washes->wash = g_renew(FlWash, washes->wash, washes->n + 1);
     washes->wash[washes->n] = wash;
     return washes->n++;

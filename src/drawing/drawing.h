@@ -42,8 +42,9 @@ typedef struct FlRegion {
     char *name;       // unique, made of [a-z0-9-], stable for the same input; used in file names
     char *label;      // the layer label path without frame numbers; "" without labels
     char *paint;      // "#rrggbb", "gradient", "image": of most of its area
-    char *skin;       // the flat paint that it shares, or that its gradient goes over into; or NULL
     uint8_t rgb[3];   // the same as a colour; the mean of a gradient or a picture
+    int skin;         // the largest region of its flat paint, or of one that its gradient goes over
+                      // into; -1: none
     int n_present;    // frames in which it is drawn
     int first_frame;  // index of the first of them
     double area_px;   // mean area over those frames

@@ -151,7 +151,6 @@ static void region_clear(void *data)
     g_free(region->name);
     g_free(region->label);
     g_free(region->paint);
-    g_free(region->skin);
     g_free(region->class_word);
 }
 
@@ -279,24 +278,11 @@ static void measure(FlDrawing *drawing, const FlSurvey *survey)
     }
 }
 
-/** The largest region of each flat paint, by that. */
-static GHashTable *flat_regions(const FlDrawing *drawing)
-{
-    GHashTable *flat = g_hash_table_new(g_str_hash, g_str_equal);
-    for (guint r = 0; r < drawing->regions->len; r++) {
-        FlRegion *region = &g_array_index(drawing->regions, FlRegion, r);
-        const FlRegion *other = g_hash_table_lookup(flat, region->paint);
-        if (region->paint[0] == '#' && (!other || region->area_px > other->area_px))
-            g_hash_table_insert(flat, region->paint, region);
-    }
-    return flat;
-}
-
 /** Says if a gradient has a stop of a colour, as programs round it. */
 static bool has_stop(const char *gradient, const uint8_t rgb[3])
 {
     for (const char *stop = strchr(gradient, ':'); stop; stop = strchr(stop + 1, ':')) {
-        const long colour = strtol(stop + 1, NULL, 16) >> 8; // without its opacity
+        const unsigned long colour = strtoul(stop + 1, NULL, 16) >> 8; // without its opacity
         int most = 0;
         for (int c = 0; c < 3; c++)
             most = MAX(most, abs((int)(colour >> (16 - 8 * c) & 255) - rgb[c]));
@@ -310,20 +296,21 @@ static bool has_stop(const char *gradient, const uint8_t rgb[3])
  * the body. */
 static void find_skins(const FlDrawing *drawing, const FlSurvey *survey, const GArray *groups)
 {
-    g_autoptr(GHashTable) flat = flat_regions(drawing);
-    for (guint r = 0; r < drawing->regions->len; r++) {
+    const guint n = drawing->regions->len;
+    for (guint r = 0; r < n; r++) {
         FlRegion *region = &g_array_index(drawing->regions, FlRegion, r);
-        const int key = g_array_index(groups, FlRegionIdentity, r).paint;
-        const FlRegion *found = g_hash_table_lookup(flat, region->paint);
-        GHashTableIter each;
-        void *other;
-        g_hash_table_iter_init(&each, flat);
-        while (g_str_equal(region->paint, "gradient") &&
-               g_hash_table_iter_next(&each, NULL, &other))
-            if (has_stop(fl_strings_get(&survey->strings, key), ((FlRegion *)other)->rgb) &&
-                (!found || ((FlRegion *)other)->area_px > found->area_px))
-                found = other;
-        region->skin = found ? g_strdup(found->paint) : NULL;
+        const bool is_gradient = g_str_equal(region->paint, "gradient");
+        const char *key =
+            fl_strings_get(&survey->strings, g_array_index(groups, FlRegionIdentity, r).paint);
+        double most = -1;
+        region->skin = -1;
+        for (guint k = 0; k < n; k++) {
+            const FlRegion *other = fl_drawing_region(drawing, (int)k);
+            if (other->paint[0] == '#' && other->area_px > most &&
+                (is_gradient ? has_stop(key, other->rgb)
+                             : g_str_equal(other->paint, region->paint)))
+                region->skin = (int)k, most = other->area_px;
+        }
     }
 }
 
