@@ -148,8 +148,7 @@ static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, const
 /* ---- the ink -----------------------------------------------------------------------------------
  */
 
-/* The factor that makes the mean amount over the mask 1. Rows are summed
- * in order. */
+/* The factor that makes the mean amount over the mask 1. Rows are summed in order. */
 static float to_mean_one(const FlGuides *guides, FlRect rect, const float *carried)
 {
     double mask = 0, sum = 0;
@@ -186,10 +185,9 @@ static bool move_ink(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, flo
                      GError **error)
 {
     g_auto(FlFlowMap) map = {0};
-    g_autofree float *carried = fl_alloc(fl_rect_pixels(rect), sizeof *carried, "a density", error);
-    if (!carried || !find_map(ink, guides, rect, &map, error))
+    if (!find_map(ink, guides, rect, &map, error))
         return false;
-    fl_flow_map_carry(&map, NULL, carried);
+    const float *carried = map.jacobian; // of a density of 1
     const float factor = to_mean_one(guides, rect, carried);
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++)

@@ -190,21 +190,19 @@ void fl_flow_map_carry(const FlFlowMap *map, const float *density, float *carrie
         for (int x = 0; x < map->width; x++) {
             const size_t p = at(map, x, y);
             const Cell cell = cell_of(map, u, x, y);
-            carried[p] = (density ? sample(&cell, density, 1) : 1) * map->jacobian[p];
+            carried[p] = sample(&cell, density, 1) * map->jacobian[p];
         }
 }
 
-/* From the derivatives by the carried density, of a density of 1, and the determinant those by the
- * whole map. */
-static void by_map(const FlFlowMap *map, const float *by_carried, const float *by_jacobian,
-                   float *by_u)
+/* From the derivative by the determinant that by the whole map. */
+static void by_map(const FlFlowMap *map, const float *by_jacobian, float *by_u)
 {
     const float *u = map->u[FL_SQUARINGS];
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++) {
             const size_t p = at(map, x, y);
             float xx, xy, yx, yy;
-            const float j = by_carried[p] + (by_jacobian ? by_jacobian[p] : 0);
+            const float j = by_jacobian[p];
             if (j == 0)
                 continue;
             gradient(map, u, 2, x, y, &xx, &xy);
@@ -236,15 +234,15 @@ static void square_adjoint(const FlFlowMap *map, const float *u, const float *by
         }
 }
 
-bool fl_flow_map_adjoint(const FlFlowMap *map, const float *by_carried, const float *by_jacobian,
-                         float *by_velocity, GError **error)
+bool fl_flow_map_adjoint(const FlFlowMap *map, const float *by_jacobian, float *by_velocity,
+                         GError **error)
 {
     const size_t n = (size_t)map->width * map->height;
     g_autofree float *by_twice = fl_alloc(2 * n, sizeof(float), "a derivative", error);
     if (!by_twice)
         return false;
     memset(by_velocity, 0, 2 * n * sizeof *by_velocity);
-    by_map(map, by_carried, by_jacobian, by_velocity);
+    by_map(map, by_jacobian, by_velocity);
     for (int k = FL_SQUARINGS - 1; k >= 0; k--) {
         memcpy(by_twice, by_velocity, 2 * n * sizeof *by_twice);
         square_adjoint(map, map->u[k], by_twice, by_velocity);

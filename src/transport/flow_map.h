@@ -21,9 +21,7 @@ typedef struct FlFlowMap {
 bool fl_flow_map_init(FlFlowMap *map, int width, int height, bool periodic, GError **error);
 void fl_flow_map_clear(FlFlowMap *map);
 
-/**
- * The velocity of a potential, px: width * height * 2.
- */
+/** The velocity of a potential, px: width * height * 2. */
 void fl_velocity(const FlFlowMap *map, const float *potential, float *velocity);
 
 /** The adjoint: writes the derivative by the potential. */
@@ -32,16 +30,14 @@ void fl_velocity_adjoint(const FlFlowMap *map, const float *by_velocity, float *
 /** Fills u and jacobian. */
 void fl_flow_map_run(FlFlowMap *map, const float *velocity);
 
-/**
- * Carries a density by the map: samples it at the map's origin of each pixel, times the
- * determinant. density NULL: 1 everywhere.
- */
+/** Carries a density by the map: samples it at the map's origin of each pixel, times the
+ * determinant. */
 void fl_flow_map_carry(const FlFlowMap *map, const float *density, float *carried);
 
-/** The derivative on a torus by the velocity from those by the carried density of 1 and, in
- * addition, by the determinant (may be NULL). Errors: FL_ERROR_NO_MEMORY. */
-bool fl_flow_map_adjoint(const FlFlowMap *map, const float *by_carried, const float *by_jacobian,
-                         float *by_velocity, GError **error);
+/** The derivative on a torus by the velocity from that by the determinant. Errors:
+ * FL_ERROR_NO_MEMORY. */
+bool fl_flow_map_adjoint(const FlFlowMap *map, const float *by_jacobian, float *by_velocity,
+                         GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFlowMap, fl_flow_map_clear)
 

@@ -12,8 +12,7 @@
 
 struct FlSliced {
     float direction[FL_SLICED_DIRECTIONS][PATCH_PIXELS]; // of length 1
-    bool known[FL_SLICED_LEVELS];
-    float (*quantile[FL_SLICED_LEVELS])[QUANTILES]; // by direction
+    float (*quantile[FL_SLICED_LEVELS])[QUANTILES];      // by direction; NULL: too few patches
 };
 
 /* Normal, but for its tails: the sum of twelve uniform numbers. */
@@ -215,7 +214,7 @@ static bool learn_level(FlSliced *sliced, int l, const float *plane, int width, 
         for (size_t q = 0; q < QUANTILES; q++)
             sliced->quantile[l][d][q] = values[ranked[(2 * q + 1) * n / (2 * QUANTILES)].index];
     }
-    return sliced->known[l] = true;
+    return true;
 }
 
 FlSliced *fl_sliced_new(const float *density, int width, int height, GError **error)
@@ -252,27 +251,6 @@ void fl_sliced_free(FlSliced *sliced)
 
 /* ---- loss --------------------------------------------------------------------------------------
  */
-
-static GArray *places_of(int width, int height)
-{
-    GArray *places = g_array_new(FALSE, FALSE, sizeof(uint32_t));
-    for (uint32_t place = 0; place < (uint32_t)(width * height); place++)
-        g_array_append_val(places, place);
-    return places;
-}
-
-void fl_sliced_places_init(FlSlicedPlaces *places, int width, int height)
-{
-    *places = (FlSlicedPlaces){.width = width, .height = height};
-    for (int l = 0; l < FL_SLICED_LEVELS; l++)
-        places->level[l] = places_of(width >> l, height >> l);
-}
-
-void fl_sliced_places_clear(FlSlicedPlaces *places)
-{
-    for (int l = 0; l < FL_SLICED_LEVELS; l++)
-        g_clear_pointer(&places->level[l], g_array_unref);
-}
 
 /* A level's sampled patches, and what is found for them. */
 typedef struct Sample {
@@ -326,15 +304,14 @@ static float one_direction(Sample *sample, const float *direction, const float *
 
 /* The loss of one level; its derivative is added to by_plane. */
 static float level_loss(const FlSliced *sliced, int l, const float *plane, int width, int height,
-                        const GArray *places, int samples, int directions, uint64_t key,
-                        float *by_plane, GError **error)
+                        int samples, int directions, uint64_t key, float *by_plane, GError **error)
 {
     g_auto(Sample) sample = {0};
     if (!sample_init(&sample, (size_t)samples, error))
         return -1;
     FlRng rng = {key};
     for (size_t i = 0; i < sample.n; i++) {
-        sample.place[i] = g_array_index(places, uint32_t, fl_rng_below(&rng, places->len));
+        sample.place[i] = fl_rng_below(&rng, (uint32_t)(width * height));
         read_patch(plane, width, height, sample.place[i], sample.patch + i * PATCH_PIXELS);
     }
     float loss = 0;
@@ -354,23 +331,22 @@ static float level_loss(const FlSliced *sliced, int l, const float *plane, int w
     return loss * share;
 }
 
-float fl_sliced_loss(const FlSliced *sliced, const FlSlicedTarget *target, unsigned levels,
-                     int samples, int directions, uint64_t key, float *by_density, GError **error)
+float fl_sliced_loss(const FlSliced *sliced, const float *density, int width, int height,
+                     unsigned levels, int samples, int directions, uint64_t key, float *by_density,
+                     GError **error)
 {
-    g_auto(Pyramid) density = {0}, by = {0};
-    const int width = target->places->width, height = target->places->height;
-    if (!pyramid_init(&density, width, height, error) || !pyramid_init(&by, width, height, error))
+    g_auto(Pyramid) of = {0}, by = {0};
+    if (!pyramid_init(&of, width, height, error) || !pyramid_init(&by, width, height, error))
         return -1;
-    fill_pyramid(&density, target->density);
+    fill_pyramid(&of, density);
     float total = 0;
     for (int l = FL_SLICED_LEVELS - 1; l >= 0; l--) {
-        const int w = density.width[l], h = density.height[l];
+        const int w = of.width[l], h = of.height[l];
         float loss = 0;
         if (l + 1 < FL_SLICED_LEVELS)
             reduce_adjoint(by.plane[l + 1], w, h, by.half, by.plane[l]);
-        const GArray *places = target->places->level[l];
-        if (levels >> l & 1 && sliced->known[l] && places->len >= FEWEST_PLACES)
-            loss = level_loss(sliced, l, density.plane[l], w, h, places, samples, directions,
+        if (levels >> l & 1 && sliced->quantile[l] && w * h >= FEWEST_PLACES)
+            loss = level_loss(sliced, l, of.plane[l], w, h, samples, directions,
                               fl_key(key, (uint64_t)l), by.plane[l], error);
         if (loss < 0)
             return -1;

@@ -25,7 +25,7 @@ typedef struct Stage {
 
 #define LEVELS(a, b) ((2u << (b)) - (1u << (a)))
 
-static const Stage gather_stages[] = {
+static const Stage patch_stages[] = {
     {40, LEVELS(2, 4), LEVELS(2, 3), 0.12f, false},
     {60, LEVELS(1, 3), LEVELS(1, 3), 0.12f, false},
     {130, LEVELS(0, 3), LEVELS(0, 3), 0.12f, true},
@@ -48,10 +48,9 @@ typedef struct Moments {
 typedef struct Solver {
     const FlTransportProblem *problem;
     FlPotential *potential, by_node;
-    FlFlowMap map;
-    FlSlicedPlaces places;
-    float *sum, *velocity, *carried;               // the state
-    float *by_carried, *by_jacobian, *by_velocity; // derivatives
+    FlFlowMap map; // its determinant is what ink of a density of 1 becomes
+    float *sum, *velocity;
+    float *by_jacobian, *by_velocity; // derivatives of the loss
     Moments moments[FL_POTENTIAL_GRIDS];
     float decay[2]; // powers of Adam's constants
 } Solver;
@@ -70,9 +69,8 @@ static void solver_clear(Solver *solver)
     clear_moments(solver);
     fl_potential_clear(&solver->by_node);
     fl_flow_map_clear(&solver->map);
-    fl_sliced_places_clear(&solver->places);
-    float *const buffers[] = {solver->sum,        solver->velocity,    solver->carried,
-                              solver->by_carried, solver->by_jacobian, solver->by_velocity};
+    float *const buffers[] = {solver->sum, solver->velocity, solver->by_jacobian,
+                              solver->by_velocity};
     for (size_t k = 0; k < G_N_ELEMENTS(buffers); k++)
         free(buffers[k]);
 }
@@ -83,12 +81,9 @@ static bool solver_init(Solver *solver, const FlTransportProblem *problem, FlPot
 {
     const size_t n = (size_t)problem->width * problem->height;
     *solver = (Solver){.problem = problem, .potential = potential};
-    fl_sliced_places_init(&solver->places, problem->width, problem->height);
     return fl_potential_init(&solver->by_node, problem->width, problem->height, error) &&
            fl_flow_map_init(&solver->map, problem->width, problem->height, true, error) &&
            (solver->sum = fl_alloc(n, sizeof(float), "a potential", error)) &&
-           (solver->carried = fl_alloc(n, sizeof(float), "a density", error)) &&
-           (solver->by_carried = fl_alloc(n, sizeof(float), "a derivative", error)) &&
            (solver->by_jacobian = fl_alloc(n, sizeof(float), "a derivative", error)) &&
            (solver->velocity = fl_alloc(2 * n, sizeof(float), "a velocity", error)) &&
            (solver->by_velocity = fl_alloc(2 * n, sizeof(float), "a derivative", error));
@@ -144,12 +139,14 @@ static void add_smoothness(Solver *solver)
         }
 }
 
-static void fold_derivative(Solver *solver)
+/* Adds the cost of determinants that are nearly or below 0. */
+static void add_folds(Solver *solver)
 {
     const size_t n = (size_t)solver->problem->width * solver->problem->height;
     for (size_t p = 0; p < n; p++) {
         const float below = FOLD_FROM - solver->map.jacobian[p];
-        solver->by_jacobian[p] = below > 0 ? -2 * W_FOLD * below / (float)n : 0;
+        if (below > 0)
+            solver->by_jacobian[p] -= 2 * W_FOLD * below / (float)n;
     }
 }
 
@@ -160,9 +157,9 @@ static float picture_loss(Solver *solver)
     const size_t n = (size_t)problem->width * (size_t)problem->height;
     double loss = 0;
     for (size_t i = 0; i < n; i++) {
-        const float more = solver->carried[i] - problem->picture[i];
+        const float more = solver->map.jacobian[i] - problem->picture[i];
         loss += (double)more * (double)more;
-        solver->by_carried[i] = 2 * more / (float)n;
+        solver->by_jacobian[i] = 2 * more / (float)n;
     }
     return (float)(loss / (double)n);
 }
@@ -170,9 +167,8 @@ static float picture_loss(Solver *solver)
 static float patches_loss(Solver *solver, unsigned levels, uint64_t key, GError **error)
 {
     const FlTransportProblem *problem = solver->problem;
-    const FlSlicedTarget target = {solver->carried, &solver->places};
-    return fl_sliced_loss(problem->style, &target, levels, SAMPLES, DIRECTIONS, key,
-                          solver->by_carried, error);
+    return fl_sliced_loss(problem->style, solver->map.jacobian, problem->width, problem->height,
+                          levels, SAMPLES, DIRECTIONS, key, solver->by_jacobian, error);
 }
 
 /* The loss of the potential as it is; its derivative by node into by_node. */
@@ -182,12 +178,11 @@ static float derive(Solver *solver, unsigned levels, uint64_t key, GError **erro
     fl_potential_sum(solver->potential, solver->sum);
     fl_velocity(&solver->map, solver->sum, solver->velocity);
     fl_flow_map_run(&solver->map, solver->velocity);
-    fl_flow_map_carry(&solver->map, NULL, solver->carried);
     const float loss =
         problem->picture ? picture_loss(solver) : patches_loss(solver, levels, key, error);
-    fold_derivative(solver);
-    if (loss < 0 || !fl_flow_map_adjoint(&solver->map, solver->by_carried, solver->by_jacobian,
-                                         solver->by_velocity, error))
+    add_folds(solver);
+    if (loss < 0 ||
+        !fl_flow_map_adjoint(&solver->map, solver->by_jacobian, solver->by_velocity, error))
         return -1;
     add_smoothness(solver);
     fl_velocity_adjoint(&solver->map, solver->by_velocity, solver->sum);
@@ -253,7 +248,7 @@ bool fl_transport_solve(const FlTransportProblem *problem, float effort, FlPoten
     if (!solver_init(&solver, problem, potential, error))
         return false;
     add_noise(potential, problem->key);
-    const Stage *stages = problem->picture ? picture_stages : gather_stages;
+    const Stage *stages = problem->picture ? picture_stages : patch_stages;
     for (const Stage *s = stages; s->iterations; s++)
         report.total += (int)((float)s->iterations * effort);
     for (const Stage *s = stages; s->iterations; s++)

@@ -11,9 +11,9 @@
 typedef struct FlTransportProblem {
     int width, height; // px, multiples of FL_POTENTIAL_COARSEST
     const FlSliced *style;
-    const float
-        *picture; // ink is to look like this, width * height of mean 1; NULL: like the style
-    float pace;   // factor on the steps: 1 draws clean bands, 3 reaches the wide features of a wash
+    // Ink is to look like this, width * height of mean 1; NULL: like the style.
+    const float *picture;
+    float pace; // factor on the steps: 1 draws clean bands, 3 reaches the wide features of a wash
     uint64_t key;
 } FlTransportProblem;
 
