@@ -209,6 +209,13 @@ kept now -c one.conf
 sed -i 's/9/8/' one.conf
 again -y -c one.conf && grep -q 'painted 6 frames' err
 result $? 'nor is a config that was edited'
+printf '[defaults]\nhold = 1\n' >two.conf
+kept now -c one.conf -c two.conf && again -c one.conf -c two.conf && grep -q 'nothing to do' err
+result $? 'two configs are the same command as well'
+sed -i 's/8/9/' one.conf
+again -y -c one.conf -c two.conf && grep -q 'painted 6 frames' err
+result $? 'unless one of them was edited'
+sed -i 's/9/8/' one.conf
 kept now -c one.conf
 again -y -c <(cat one.conf) && again -y -c <(sed 's/8/7/' one.conf) && grep -q 'painted 6 frames' err
 result $? 'nor one that comes through a pipe'

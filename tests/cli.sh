@@ -56,6 +56,13 @@ refuses 'a config that is not there is named' 1 'no.conf: *No such file*' -c no.
 printf '[defaults]\n\nstyel = 01\n' >bad.conf
 refuses 'a mistake in a config has file and line' 2 'bad.conf:3: *did you mean “style”?' -c bad.conf whole
 
+cp bad.conf 'a;b.conf' && cp bad.conf c.conf && mkfifo pipe.conf
+refuses 'a config may have a semicolon in its name' 2 'a;b.conf:3: *' -c 'a;b.conf' whole
+refuses 'of several configs none may' 2 '-c: “a;b.conf” has a semicolon *' -c 'a;b.conf' -c c.conf whole
+refuses 'nor may a later one' 2 '-c: “a;b.conf” has a semicolon *' -c bad.conf -c c.conf -c 'a;b.conf' whole
+refuses 'none of the configs that are watched is a pipe' 2 '--watch: pipe.conf: *' -c c.conf -c pipe.conf --watch whole
+rm 'a;b.conf' c.conf pipe.conf
+
 # What is wrong with the drawing is known before anything is painted.
 refuses 'a pattern that fits nothing suggests one' 1 '*did you mean w_%04d.svg*' 'whole/v_%04d.svg' $look
 refuses 'a folder that is not there is named' 1 'nowhere: *' nowhere $look

@@ -136,6 +136,14 @@ static void files_override_those_that_they_include(void)
     g_assert_null(fl_config_load(itself, NULL, &error));
     g_assert_nonnull(strstr(error->message, "include each other"));
     g_clear_error(&error);
+    g_autofree char *many = g_strnfill(70, ';');
+    g_auto(GStrv) gaps = g_strsplit(many, ";", -1);
+    g_autofree char *list = g_strjoinv("show/show.conf;", gaps);
+    g_autofree char *all = g_strconcat("[project]\ninclude = ", list, NULL);
+    g_autofree char *wide = write_config(all);
+    g_assert_null(fl_config_load(wide, NULL, &error));
+    g_assert_nonnull(strstr(error->message, "include each other"));
+    g_clear_error(&error);
     g_autofree char *endless = write_config("[project]\ninclude = /dev/zero");
     g_assert_null(fl_config_load(endless, NULL, &error));
     g_assert_true(g_str_has_prefix(error->message, "/dev/zero: "));

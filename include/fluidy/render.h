@@ -145,8 +145,8 @@ typedef struct FlRenderOptions {
     FlSandboxing sandbox; /**< confines the processes that read drawings */
 
     /* Painting. */
-    const char *config;      /**< a file as in fluidy-svg.conf(5), or several, separated by
- semicolons: later ones override earlier ones; NULL: no config */
+    const char *config; /**< a file as in fluidy-svg.conf(5), or several, separated by semicolons,
+                           of which later ones override earlier ones; NULL: no config */
     const char *config_text; /**< text in place of that file's, which need not exist; its paths are
                                 relative to the file's folder; NULL: the file's */
     const FlSetting *settings; /**< override the config's; of several, the last wins */

@@ -39,6 +39,18 @@ static bool check_contradiction(const FlArgs *args, const FlOption *option, GErr
     return true;
 }
 
+/* Semicolons separate several configs, so that none of these has one in its name. */
+static char *add_config(const char *before, const char *name, const char *value, GError **error)
+{
+    const bool first = strchr(before, ';') && g_file_test(before, G_FILE_TEST_EXISTS);
+    if (!first && !strchr(value, ';'))
+        return g_strconcat(before, ";", value, NULL);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "%s: “%s” has a semicolon in its name; expected no other config besides it", name,
+                first ? before : value);
+    return NULL;
+}
+
 /* The options of a render. */
 static gboolean read_option(const char *name, const char *value, gpointer data, GError **error)
 {
@@ -46,7 +58,8 @@ static gboolean read_option(const char *name, const char *value, gpointer data, 
     const FlOption *option = option_named(name);
     g_autofree char *configs = NULL;
     if (strcmp(option->name, "config") == 0 && args->render.config) {
-        configs = g_strconcat(args->render.config, ";", value, NULL);
+        if (!(configs = add_config(args->render.config, name, value, error)))
+            return FALSE;
         value = configs;
     }
     if (option->type == FL_OPTION_FLAG)

@@ -144,7 +144,8 @@ static bool read_base(FlLiveConfig *config, GError **error)
 {
     const char *path = config->args->render.config;
     g_autofree char *text = NULL;
-    if (path && strchr(path, ';') && !g_file_test(path, G_FILE_TEST_EXISTS)) {
+    g_auto(GStrv) paths = fl_options_configs(path);
+    if (g_strv_length(paths) > 1) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "--serve: expected one config, which may include others");
         return false;

@@ -254,16 +254,17 @@ static int watch_round(FlArgs *args, Reporter *reporter)
     return -1;
 }
 
-/* True if the config can be read again: it is not a pipe. */
+/* True if the configs can be read again: none is a pipe. */
 static bool can_reread_config(const FlArgs *args, const char *option, GError **error)
 {
-    const char *config = args->render.config;
-    if (!config || !g_file_test(config, G_FILE_TEST_EXISTS) ||
-        g_file_test(config, G_FILE_TEST_IS_REGULAR))
-        return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: %s: expected a file, which can be read again",
-                option, config);
-    return false;
+    g_auto(GStrv) paths = fl_options_configs(args->render.config);
+    for (char **path = paths; *path; path++)
+        if (g_file_test(*path, G_FILE_TEST_EXISTS) && !g_file_test(*path, G_FILE_TEST_IS_REGULAR)) {
+            g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                        "%s: %s: expected a file, which can be read again", option, *path);
+            return false;
+        }
+    return true;
 }
 
 static int watch(FlArgs *args, Reporter *reporter)

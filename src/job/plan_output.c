@@ -152,7 +152,7 @@ void fl_plan_list_inputs(FlPlan *plan)
         regions[p] = shapes->painted[p].name;
     list_files(plan->inputs, &plan->options, shapes->drawing, regions);
     for (guint k = 0; k < plan->config->files->len; k++)
-        fl_inputs_add(plan->inputs, plan->config->files->pdata[k]);
+        fl_inputs_add_quietly(plan->inputs, plan->config->files->pdata[k]);
     for (int k = fl_plan_earliest(plan); k < fl_drawing_earlier(shapes->drawing); k++)
         fl_inputs_add(plan->inputs, fl_drawing_found_files(shapes->drawing)[k]);
 }

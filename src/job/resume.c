@@ -307,11 +307,11 @@ static bool writes_more(const FlOutputs *o)
 /* The store of the plan, if its render can be known as finished. */
 static FlStore *store_for(const FlPlan *plan)
 {
-    const bool piped =
-        plan->options.config && !g_file_test(plan->options.config, G_FILE_TEST_IS_REGULAR);
-    return writes_more(&plan->out) || plan->options.dry_run || piped
-               ? NULL
-               : plan->cache; // a pipe cannot be read again
+    const GPtrArray *configs = plan->config->files;
+    for (guint k = 0; k < configs->len; k++)
+        if (!g_file_test(configs->pdata[k], G_FILE_TEST_IS_REGULAR))
+            return NULL; // a pipe cannot be read again
+    return writes_more(&plan->out) || plan->options.dry_run ? NULL : plan->cache;
 }
 
 /* The name of the record: all renders of these frames, or this film, have the same. */
@@ -393,7 +393,7 @@ static void tell_inputs(const FlPlan *plan, const FlRecord *record)
 {
     for (guint k = 0; k < record->inputs->list->len; k++) {
         const char *path = g_array_index(record->inputs->list, FlFact, k).name;
-        if (g_strcmp0(path, plan->options.config) != 0)
+        if (!g_ptr_array_find_with_equal_func(plan->config->files, path, g_str_equal, NULL))
             fl_inputs_add(plan->inputs, path);
     }
 }

@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-#define MOST_DEEP 8 // files that include each other
+#define MOST_FILES 64 // that are read; a file that includes itself would never end
 
 /* The current section; NOWHERE is above the first one, where keys are errors. */
 typedef enum Place { NOWHERE, PROJECT, DEFAULTS, REGION } Place;
@@ -269,12 +269,12 @@ static bool read_entry(void *data, const char *key, const char *value, int line,
 /* ---- the whole --------------------------------------------------------------------------- */
 
 static bool read_files(FlConfig *config, const FlRenderOptions *caller, char **paths,
-                       const char *folder, int depth, GError **error);
+                       const char *folder, GError **error);
 
 /* text: of the file, which is then not read; NULL: it is read. An included file is a regular one.
  */
 static bool read_file(FlConfig *config, const FlRenderOptions *caller, const char *path,
-                      const char *text, int depth, GError **error)
+                      const char *text, bool included, GError **error)
 {
     g_auto(Reader) reader = {
         .config = config,
@@ -285,28 +285,29 @@ static bool read_file(FlConfig *config, const FlRenderOptions *caller, const cha
     };
     const FlFileWait wait = {caller ? caller->stopped : NULL, caller ? caller->data : NULL};
     const FlKeyReader calls = {
-        read_section, read_entry, &reader, FL_ERROR_USAGE, depth > 0 ? NULL : &wait, text};
-    if (depth > MOST_DEEP)
+        read_section, read_entry, &reader, FL_ERROR_USAGE, included ? NULL : &wait, text};
+    if (config->files->len >= MOST_FILES)
         return fl_fail(error, FL_ERROR_USAGE,
                        "%s: more than %d files include each other; it may include itself", path,
-                       MOST_DEEP);
+                       MOST_FILES);
     g_ptr_array_add(config->files, g_strdup(path));
     if (caller && caller->reads)
         caller->reads(path, caller->data);
     return fl_key_file_read(path, &calls, error) &&
-           read_files(config, caller, reader.includes, reader.folder, depth + 1, error);
+           read_files(config, caller, reader.includes, reader.folder, error);
 }
 
-/* From the last one on: it overrides the others. */
+/* From the last one on: it overrides the others. folder: of the file that includes them, or NULL.
+ */
 static bool read_files(FlConfig *config, const FlRenderOptions *caller, char **paths,
-                       const char *folder, int depth, GError **error)
+                       const char *folder, GError **error)
 {
     bool good = true;
     for (guint k = paths ? g_strv_length(paths) : 0; k-- > 0 && good;) {
         g_autofree char *path = !folder || g_path_is_absolute(paths[k])
                                     ? g_strdup(paths[k])
                                     : g_build_filename(folder, paths[k], NULL);
-        good = read_file(config, caller, path, NULL, depth, error);
+        good = read_file(config, caller, path, NULL, folder != NULL, error);
     }
     return good;
 }
@@ -318,11 +319,9 @@ FlConfig *fl_config_load(const char *path, const FlRenderOptions *caller, GError
     config->strings = g_ptr_array_new_with_free_func(g_free);
     config->files = g_ptr_array_new_with_free_func(g_free);
     config->path = g_strdup(path);
-    const bool several =
-        path && !text && strchr(path, ';') && !g_file_test(path, G_FILE_TEST_EXISTS);
-    g_auto(GStrv) paths = several ? fl_key_file_list(path) : NULL;
-    if (several ? !read_files(config, caller, paths, NULL, 0, error)
-                : path && !read_file(config, caller, path, text, 0, error))
+    g_auto(GStrv) paths = fl_options_configs(path);
+    if (path && text ? !read_file(config, caller, path, text, false, error)
+                     : !read_files(config, caller, paths, NULL, error))
         return NULL;
     for (int i = 0; i < config->n_rules; i++)
         config->rules[i].by_name = is_by_name(&config->rules[i]);

@@ -39,8 +39,8 @@ typedef struct FlConfig {
 } FlConfig;
 
 /**
- * Reads a file or a pipe, such as the shell's <(…), or several, separated by semicolons, of which
- * later ones override earlier ones, and those that they include; path NULL gives an empty config.
+ * Reads fl_options_configs(path), files or pipes such as the shell's <(…), of which later ones
+ * override earlier ones, and those that they include; path NULL gives an empty config.
  * `caller`, who may be NULL, is told of the files, and can stop the wait for a pipe.
  *
  * Returns: to be freed with fl_config_free(); NULL with FL_ERROR_USAGE (or an error of

@@ -214,6 +214,13 @@ bool fl_options_take(const FlRenderOptions *given, FlRenderOptions *known, GErro
     return given->size >= FIRST_SIZE && i == known->n_settings;
 }
 
+char **fl_options_configs(const char *config)
+{
+    const char *const one[] = {config, NULL};
+    const bool several = config && strchr(config, ';') && !g_file_test(config, G_FILE_TEST_EXISTS);
+    return several ? g_strsplit(config, ";", -1) : g_strdupv((char **)one);
+}
+
 FlCaller fl_caller_of(const FlRenderOptions *options)
 {
     return (FlCaller){.progress = options->progress,

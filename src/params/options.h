@@ -130,6 +130,10 @@ bool fl_option_set(const FlOption *option, const char *value, const char *folder
 /** Copies the options of a caller, whose struct may have fewer or more fields. FL_ERROR_USAGE. */
 bool fl_options_take(const FlRenderOptions *given, FlRenderOptions *known, GError **error);
 
+/** The files that FlRenderOptions.config names: one that has this name, else several, separated by
+ * semicolons; NULL names none. To be freed with g_strfreev(). */
+char **fl_options_configs(const char *config);
+
 /** The caller of a render that begins now. */
 FlCaller fl_caller_of(const FlRenderOptions *options);
 
