@@ -316,9 +316,9 @@ FlPlan *fl_plan_earlier(const FlPlan *plan, int *first, GError **error)
 
 void fl_plan_free(FlPlan *plan)
 {
-    const FlShapes *shapes = &plan->shapes;
     if (!plan)
         return;
+    const FlShapes *shapes = &plan->shapes;
     for (int p = 0; p < shapes->n_painted; p++) {
         fl_region_settings_clear(&shapes->painted[p].settings);
         fl_keys_free(shapes->painted[p].styles);
