@@ -136,7 +136,8 @@ static int parts_of(const FlLiveJob *job)
                                         : HAS_DRAFT;
 }
 
-/* The asker counts as one that has what it gets. */
+/* The asker counts as one that has what it gets, but for the drawing, which it keeps when settings
+ * change and which an interrupted job does not give. */
 static void ask(Client *client, FlLiveJob *job)
 {
     FlLiveClients *clients = client->clients;
@@ -144,7 +145,7 @@ static void ask(Client *client, FlLiveJob *job)
     job->asker = client;
     clients->n_asked++;
     if (clients->n_frames > 0)
-        client->has[job->frame] |= (uint8_t)parts_of(job);
+        client->has[job->frame] |= (uint8_t)(parts_of(job) & ~HAS_DRAWING);
     if (job->work == FL_LIVE_DRAFT)
         client->next = job->frame + 1;
     if (job->work == FL_LIVE_SAMPLE)
