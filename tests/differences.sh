@@ -1,5 +1,5 @@
 #!/bin/bash
-# Drawings that resist being taken apart look as rsvg-convert draws them, in as many regions as can be.
+# Drawings that resist being taken apart look as rsvg-convert, or a browser, draws them, in as many regions as can be.
 # usage: differences.sh PROGRAM FIXTURES PSNR
 . "${0%/*}/tap.sh"
 program=$(realpath "$1") drawings=$(realpath "$2")/differences psnr=$(realpath "$3") db=-
