@@ -447,9 +447,9 @@ static double flicker_of(Disk *disk, const Motion *m, int frames)
 /* What moves, grows, turns by a quarter or rests flickers no more than the bounds say. */
 static void ink_does_not_flicker(void)
 {
-    static const Motion motions[] = {{"moving", 3, 0, 1, 0.08f},
-                                     {"growing", 2.8f, 0, 1.012f, 0.08f},
-                                     {"turning", 0, 0.0654498f, 1, 0.08f},
+    static const Motion motions[] = {{"moving", 3, 0, 1, 0.005f},
+                                     {"growing", 2.8f, 0, 1.012f, 0.015f},
+                                     {"turning", 0, 0.0654498f, 1, 0.03f},
                                      {"at rest", 0, 0, 1, 0}};
     g_autofree char *smoke = bundled_style("14");
     for (size_t k = 0; k < G_N_ELEMENTS(motions); k++) {
