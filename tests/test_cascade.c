@@ -363,7 +363,6 @@ static void images_keep_their_shape(void)
     assert_value("<image id='a' width='auto' href='" PIXEL "'/>", "height", "");
 }
 
-/** What librsvg leaves out and a browser draws. */
 static void gaps_of_librsvg_are_filled(void)
 {
     assert_value("<polygon id='a' points='0 0 9,0 9 9 5'/>", "points", "0 0 9,0 9 9");
@@ -398,9 +397,11 @@ static void each_kind_that_is_left_out_is_told_once(void)
     g_free(computed(
         "<style>path{backdrop-filter:blur(1px);fill:nonsense;-webkit-foo:1;cursor:help}"
         ":has(a){fill:red}</style><path style='backdrop-filter:none'/><path id='a' d='M0 0h1' "
-        "stroke='rgb(from 1 r g b)' style='mix-blend-mode:plus-lighter;word-spacing:1px'/>",
+        "stroke='rgb(from 1 r g b)' style='mix-blend-mode:plus-lighter;word-spacing:1px'/>"
+        "<text style='rotate:1deg' transform-box='fill-box'>a</text>",
         "a", "fill", warnings));
-    g_assert_cmpint(fl_warnings_count(warnings), ==, 6);
+    g_assert_cmpint(fl_warnings_count(warnings), ==, 7);
+    g_assert_nonnull(strstr(fl_warnings_get(warnings, 6)->text, "“transform-box” cannot"));
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, ":has(a)"));
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 1)->text, "backdrop-filter"));
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 2)->text, "nonsense"));

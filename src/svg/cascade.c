@@ -47,12 +47,13 @@ typedef struct Value {
     bool important;
 } Value;
 
-/** Warns once a document about a property, with the first value that was left out. */
+/** Warns once a document about a property, with the first value that was left out; NULL: the name
+ * says all. */
 static void warn(Cascade *c, const char *name, const char *value, const char *why)
 {
     if (c->warnings && g_hash_table_add(c->said, g_strdup(name)))
-        fl_warnings_add(c->warnings, c->path, c->number, NULL, "“%s: %.60s” %s and is left out",
-                        name, value, why);
+        fl_warnings_add(c->warnings, c->path, c->number, NULL, "“%s%s%.60s” %s and is left out",
+                        name, value ? ": " : "", value ? value : "", why);
 }
 
 /* ---- declared values ------------------------------------------------------------------------- */
@@ -672,10 +673,8 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
         if (child->type == XML_ELEMENT_NODE)
             visit(c, child, &style);
     const char *left_out = fl_css_effects_apply(&effects, node, &style.units, &c->n_clips);
-    const char *told = left_out ? fl_css_effects_get(&effects, left_out) : NULL;
     if (left_out)
-        warn(c, left_out, told ? told : fl_css_effects_get(&effects, "transform"),
-             "cannot be drawn");
+        warn(c, left_out, fl_css_effects_get(&effects, left_out), "cannot be drawn");
     g_clear_pointer(&style.variables, g_hash_table_unref);
 }
 

@@ -231,7 +231,7 @@ static bool map_of_css(const char *name, const char *arguments, const FlCssUnits
     return good;
 }
 
-/** What a matrix does to the plane, seen from straight above. Returns: false if it has a vanishing
+/** The map of the plane in a matrix, seen from straight above. Returns: false if it has a vanishing
  * point, which is left out. */
 static bool flatten(const Space *space, FlAffine *m)
 {
