@@ -111,7 +111,7 @@ static float distance_of(const Candidate *candidate, const float fill[3])
            OF_COMPLEMENTS * (1 - harmony_of(candidate));
 }
 
-/* The purer pigment is the second one, which prevails in the shadow: greyer shadows look dirty. */
+/* Makes the purer pigment the second one, which prevails in the shadow: grey shadows look dirty. */
 static void swap_pigments(FlMixture *mixture)
 {
     const FlPigment *first = mixture->pigment[0];
@@ -123,8 +123,8 @@ static void swap_pigments(FlMixture *mixture)
 
 #define MOST_LIGHT .01f // of a channel, as the lighter pigment prevails by one CIE76
 
-/* The density that turns the hue by one CIE76 towards the second pigment. Much of the light stays,
- * but a dark yellow would be olive. */
+/* The density that turns the hue by one CIE76 towards the second pigment, with half of the light by
+ * which the two differ: at one light an orange would turn olive. */
 static void find_turn(FlMixture *mixture)
 {
     static const float light[3] = {.2126f, .7152f, .0722f};

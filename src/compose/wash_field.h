@@ -71,7 +71,7 @@ void fl_field_find_pools(const FlWashField *field, float *pool);
 /** A share at each point by which it lies in the middle of something large. */
 void fl_field_find_heart(const FlWashField *field, float *heart);
 
-/** A share at each point by which it lies behind the rim, in what the recording paints evenly. */
+/** A share at each point by which it lies behind the rim. */
 void fl_field_find_middle(const FlWashField *field, float *middle);
 
 /** A share at each point by which it lies in something large: lines and dots have no wash. */

@@ -292,26 +292,40 @@ static bool has_stop(const char *gradient, const uint8_t rgb[3])
     return false;
 }
 
+/** Finds the region into whose flat paint a gradient goes over; -1: there is none. */
+static int skin_of_gradient(const GArray *regions, const char *gradient)
+{
+    double most = -1;
+    int skin = -1;
+    for (int k = 0; k < (int)regions->len; k++) {
+        const FlRegion *other = &g_array_index(regions, FlRegion, k);
+        if (other->skin == k && other->area_px > most && has_stop(gradient, other->rgb))
+            skin = k, most = other->area_px;
+    }
+    return skin;
+}
+
 /** Finds the skins of the regions: a neck whose gradient ends in the colour of the body is one with
  * the body. */
 static void find_skins(const FlDrawing *drawing, const FlSurvey *survey, const GArray *groups)
 {
+    FlRegion *all = (FlRegion *)(void *)drawing->regions->data;
     const guint n = drawing->regions->len;
+    g_autoptr(GHashTable) largest = g_hash_table_new(g_str_hash, g_str_equal); // by flat paint
     for (guint r = 0; r < n; r++) {
-        FlRegion *region = &g_array_index(drawing->regions, FlRegion, r);
-        const bool is_gradient = g_str_equal(region->paint, "gradient");
-        const char *key =
-            fl_strings_get(&survey->strings, g_array_index(groups, FlRegionIdentity, r).paint);
-        double most = -1;
-        region->skin = -1;
-        for (guint k = 0; k < n; k++) {
-            const FlRegion *other = fl_drawing_region(drawing, (int)k);
-            if (other->paint[0] == '#' && other->area_px > most &&
-                (is_gradient ? has_stop(key, other->rgb)
-                             : g_str_equal(other->paint, region->paint)))
-                region->skin = (int)k, most = other->area_px;
-        }
+        const FlRegion *known = g_hash_table_lookup(largest, all[r].paint);
+        if (all[r].paint[0] == '#' && (!known || all[r].area_px > known->area_px))
+            g_hash_table_insert(largest, all[r].paint, &all[r]);
     }
+    for (guint r = 0; r < n; r++) {
+        const FlRegion *found = g_hash_table_lookup(largest, all[r].paint);
+        all[r].skin = found ? (int)(found - all) : -1;
+    }
+    for (guint r = 0; r < n; r++)
+        if (g_str_equal(all[r].paint, "gradient")) {
+            const int key = g_array_index(groups, FlRegionIdentity, r).paint;
+            all[r].skin = skin_of_gradient(drawing->regions, fl_strings_get(&survey->strings, key));
+        }
 }
 
 /** Follows merges of merges; a region in a cycle of merges stays itself. */
