@@ -13,8 +13,7 @@ typedef struct FlComposite {
     FlLayer *layers;      // bottom first; their areas, rgba and knockout are owned
     char **names;         // of the layers, for files: unique in the frame
     const char **regions; // of the layers: the names of the drawing's regions; that of the stain
-    uint8_t *ground;      // what lies below the layers, opaque or a picture, if they are stored and
-                          // there is something; else NULL
+    uint8_t *ground;      // the opaque colour or the picture below stored layers, if any; else NULL
     uint8_t *sheet;       // of paper, fl_paper_sheet_picture(), if layers are stored; else NULL
     uint8_t *rgba;        // width * height * 4 straight sRGBA
     uint16_t *rgba16;     // NULL unless asked for

@@ -35,7 +35,7 @@ void fl_contacts_clear(FlContacts *contacts);
 /** A layer into which paint runs, planes of its box. */
 typedef struct FlRunning {
     uint8_t other[3];  // colour of the paint that runs
-    int16_t *amounts;  // which gather at the tips of what has run
+    int16_t *amounts;  // of paint, which gathers at the tips of the fingers that have run
     uint8_t *fills;    // RGBA: become mixtures of both colours
     uint8_t *knockout; // rises where the rim is lost; NULL: the layer has none
 } FlRunning;

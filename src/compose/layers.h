@@ -21,9 +21,9 @@ void fl_fade_clear(FlFade *fade);
 
 /** One layer; in arrays the bottom one comes first. */
 typedef struct FlLayer {
-    FlArea area;             // where it may be seen
+    FlArea area;             // the pixels in which it may be seen
     const uint8_t *coverage; // of the box, 0..255: the whole shape, times the opacity of its fill
-                             // where that varies; 0 beyond the area
+                             // if that varies; 0 beyond the area
     bool owns_coverage;      // else it is borrowed
     uint8_t *knockout;       // box.width * box.height of fl_knockout(), owned as rgba is: it knocks
                              // out as far as its paint covers; NULL: wherever its shape is

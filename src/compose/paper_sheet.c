@@ -18,8 +18,8 @@
 #define TOOTH_END 2.2f  // standard deviations
 #define SLOW_PX 8       // clouds and warmth are known every so many px
 #define ROOM_PX 256     // that the sheet is larger than a frame if other parts of it are wanted
-#define MOST_FINER 4    // times: as far as small pages are made larger, and
-#define MOST_PIXELS 2e7 // as large as that may be
+#define MOST_FINER 4    // times that small pages are made larger, at most
+#define MOST_PIXELS 2e7 // of a page that has been made larger
 #define BAND_ROWS 32    // of a sheet that is put away are read at a time
 
 /* ---- making ---------------------------------------------------------------------------------- */

@@ -58,9 +58,9 @@ typedef struct FlRegion {
  */
 typedef struct FlAnchor {
     float x, y;           // px of the picture, within FL_POSE_MOST_PX
-    float cosine, sine;   // of its turn since the first frame
-    float rest_x, rest_y; // where it was in that, the first that has the region
-    float axis;           // direction of the longer side in that, degrees; NAN: it is round
+    float cosine, sine;   // of its turn since the first frame that has the region
+    float rest_x, rest_y; // its place in that frame
+    float axis;           // direction of the longer side in that frame, degrees; NAN: it is round
     float side;           // of a square as large as the region's shapes, px; the same in all frames
 } FlAnchor;
 
@@ -71,12 +71,11 @@ void fl_anchor_rest_row(const FlAnchor *anchor, int x, int y, int step, int n, f
 
 #define FL_LIMBS 12 // of a region, at most
 
-/** A part of a region that moves by itself, such as a leg: an anchor of its own, and where it is.
- */
+/** A part of a region that moves by itself, such as a leg: an anchor of its own, and its place. */
 typedef struct FlLimb {
     FlAnchor anchor;
     float x, y;      // its middle, px of the picture
-    float spread[3]; // of its shape about that: as in FlPose
+    float spread[3]; // of its shape about its middle, as in FlPose
 } FlLimb;
 
 /** A sequence and its regions. What it keeps of pictures does not grow with the film. */

@@ -41,7 +41,7 @@ typedef struct Fit {
     double most;  // that the turn could be
 } Fit;
 
-/* The region in the first frame that has it. */
+/* A region as its first frame shows it. */
 typedef struct Begin {
     Means means;
     double spread[3]; // about the page's corner: as in FlPose, times the weight
@@ -56,7 +56,7 @@ typedef struct Follower {
     Fit *fit;     // of each region
     Begin *begin; // of each region
     bool *begun;  // true after that frame
-    bool *limbs;  // true if some of its limbs move apart from it
+    bool *limbs;  // true if some of its limbs move by themselves
 } Follower;
 
 /* The conjugate of a, times b. */
@@ -332,7 +332,7 @@ void fl_anchor_rest_row(const FlAnchor *anchor, int x, int y, int step, int n, f
     }
 }
 
-/* A limb begins where its region has it. */
+/* Gives a limb the anchor that it would have if it moved with its region. */
 static void begin_limb(FlAnchor *limb, const FlAnchor *region, FlPoint middle)
 {
     const FlPoint rest = at_rest(region, middle);
@@ -340,7 +340,7 @@ static void begin_limb(FlAnchor *limb, const FlAnchor *region, FlPoint middle)
                        within(rest.x),   within(rest.y),   region->axis,   region->side};
 }
 
-/* Returns: true if a limb is elsewhere than its region has it. */
+/* Returns: true if a limb has moved from the place that its region's motion gives it. */
 static bool strays(const FlAnchor *limb, const FlAnchor *region, const FlSurveyPart *part,
                    double least)
 {

@@ -27,7 +27,8 @@ static bool is_same(const FlShape *a, const FlShape *b)
            fabs(a->height - b->height) <= SIZE_PX;
 }
 
-/** What has rested for long counts more than what moves, and so does what is large. */
+/** Shapes that have rested for long count more than those that move, and large ones more than small
+ * ones. */
 static GArray *votes_of(const GArray *known, const GArray *now)
 {
     GArray *votes = g_array_new(FALSE, FALSE, sizeof(Vote));
@@ -44,7 +45,7 @@ static GArray *votes_of(const GArray *known, const GArray *now)
     return votes;
 }
 
-/** The known shape that is nearest to one of this frame, and has not been seen in it. */
+/** The nearest to a shape of this frame of all known shapes that the frame has not shown yet. */
 static Known *nearest(const GArray *known, const FlShape *shape, double *away)
 {
     Known *found = NULL;

@@ -386,7 +386,8 @@ static bool no_number_twice(const GArray *found, GError **error)
     return true;
 }
 
-/** The file of a number, or with hold that of the nearest number before it, else after it. */
+/** The file of a number; with hold, if it is missing, that of the nearest number before, else
+ * after. */
 static const Found *look_up(const GArray *found, int number, bool hold)
 {
     const Found *before = NULL;

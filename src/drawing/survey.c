@@ -77,8 +77,9 @@ bool fl_survey_measure(FlSurvey *survey, int t, const FlCanvas *canvas, bool sha
 /* ---- the size -------------------------------------------------------------------------------- */
 
 /**
- * The scale with which the page leaves no column or row of the picture partly bare: one that is
- * would be a contour, with the rim of the paint along it. Less than a pixel of the page is cut off.
+ * The scale with which the page leaves no column or row of the picture partly bare: a bare one
+ * would be a contour, with the rim of the paint along the picture's edge. Less than a pixel of the
+ * page is cut off.
  */
 static double cover_scale(double scale, double width, double height, double w, double h)
 {
