@@ -107,13 +107,14 @@ static bool render_frame(Pipeline *pipeline, int frame, GError **error)
     return fl_frames_tell(&pipeline->frames, "paint", frame + 1, fl_seconds_since(start), error);
 }
 
-/* ---- the notes at its end ----------------------------------------------------------------------
+/* ---- the notes at its end ---------------------------------------------------------------------
  */
 
-static const char *written(const FlPlan *plan)
+/* The film, the frames, or both, as they are named. To be freed. */
+static char *written(const FlOutputs *o)
 {
-    const FlOutputs *o = &plan->out;
-    return !plan->out.parts_only ? plan->out.output : o->paint ? o->paint : o->layers;
+    const char *frames = !o->parts_only ? o->output : o->paint ? o->paint : o->layers;
+    return o->movie ? g_strdup_printf("%s and %s", o->movie, frames) : g_strdup(frames);
 }
 
 static const char *plural(int n)
@@ -121,39 +122,39 @@ static const char *plural(int n)
     return n == 1 ? "" : "s";
 }
 
+static void tell_gaps(const FlPlan *plan)
+{
+    g_autofree char *gaps = fl_drawing_left_out(plan->shapes.drawing, plan->options.missing);
+    if (gaps)
+        fl_note(&plan->caller, "%s", gaps);
+}
+
 static void tell_render(const FlPlan *plan, const FlStats *stats)
 {
     const int n = plan->out.end - plan->out.first;
-    const char *movie = plan->out.movie ? plan->out.movie : "",
-               *and = plan->out.movie ? " and " : "";
-    g_autofree char *done = plan->finished == FL_FINISHED_FRAMES
-                                ? g_strdup_printf("made of %d frame%s that %s painted before: %s",
-                                                  n, plural(n), n == 1 ? "was" : "were", movie)
-                                : g_strdup_printf("painted %d frame%s: %s%s%s", n, plural(n), movie,
-                                                  and, written(plan));
-    g_autofree char *seconds = fl_stats_summary(stats, n);
-    g_autofree char *gaps = fl_drawing_left_out(plan->shapes.drawing, plan->options.missing);
-    fl_note(&plan->caller, "%s", done);
-    if (gaps)
-        fl_note(&plan->caller, "%s", gaps);
+    g_autofree char *files = written(&plan->out), *seconds = fl_stats_summary(stats, n);
+    if (plan->finished == FL_FINISHED_FRAMES)
+        fl_note(&plan->caller, "made of %d frame%s that %s painted before: %s", n, plural(n),
+                n == 1 ? "was" : "were", plan->out.movie);
+    else
+        fl_note(&plan->caller, "painted %d frame%s: %s", n, plural(n), files);
+    tell_gaps(plan);
     fl_note(&plan->caller, "%s", seconds);
-    if (!plan->out.report)
-        return;
-    g_autofree char *page = g_strdup_printf("report: %s/index.html", plan->out.report);
-    fl_note(&plan->caller, "%s", page);
+    if (plan->out.report)
+        fl_note(&plan->caller, "report: %s/index.html", plan->out.report);
 }
 
 static void tell_nothing(const FlPlan *plan)
 {
     const int n = plan->n_finished;
-    g_autofree char *line =
-        plan->out.overwrite == FL_OVERWRITE_KEEP
-            ? g_strdup_printf("nothing to do: %d frame%s exist%s and %s kept: %s", n, plural(n),
-                              n == 1 ? "s" : "", n == 1 ? "is" : "are", plan->out.output)
-            : g_strdup_printf("nothing to do: %d frame%s and all that they are made from have not "
-                              "changed: %s",
-                              n, plural(n), plan->out.movie ? plan->out.movie : plan->out.output);
-    fl_note(&plan->caller, "%s", line);
+    const FlOutputs *o = &plan->out;
+    if (o->overwrite == FL_OVERWRITE_KEEP)
+        fl_note(&plan->caller, "nothing to do: %d frame%s exist%s and %s kept: %s", n, plural(n),
+                n == 1 ? "s" : "", n == 1 ? "is" : "are", o->output);
+    else
+        fl_note(&plan->caller,
+                "nothing to do: %d frame%s and all that they are made from have not changed: %s", n,
+                plural(n), o->movie ? o->movie : o->output);
 }
 
 /* The reason why some of each region was painted although the cache is not new: an array of
@@ -184,9 +185,7 @@ static void tell_reason(const FlPainters *painters, int p, char **reasons, const
     }
     g_autofree char *who = n == 1 ? g_strdup_printf("region %s", painters->painter[p]->plan->name)
                                   : g_strdup_printf("%d regions", n);
-    g_autofree char *line =
-        g_strdup_printf("%s: painted %d of %d pictures, since %s", who, painted, all, reasons[p]);
-    fl_note(caller, "%s", line);
+    fl_note(caller, "%s: painted %d of %d pictures, since %s", who, painted, all, reasons[p]);
 }
 
 static void tell_reuse(const FlPainters *painters, const FlCaller *caller)
@@ -199,39 +198,24 @@ static void tell_reuse(const FlPainters *painters, const FlCaller *caller)
         if (reasons[p][0])
             tell_reason(painters, p, reasons, caller);
     }
-    if (taken == 0)
-        return;
-    g_autofree char *line =
-        g_strdup_printf("paint of regions: %d pictures from the cache, %d painted", taken, painted);
-    fl_note(caller, "%s", line);
+    if (taken > 0)
+        fl_note(caller, "paint of regions: %d pictures from the cache, %d painted", taken, painted);
 }
 
-/* An estimate of the time; held frames take no time. */
-static char *forecast(const FlPlan *plan, double frame_s)
-{
-    const int n = (plan->shapes.n_frames - 1) / plan->shapes.hold + 1;
-    const int lead_in = plan->options.loop ? fl_loop_length(n) : 0;
-    const int seconds = (int)(frame_s * (n + lead_in) + 0.5);
-    return g_strdup_printf("that would take about %d:%02d:%02d, %.2f seconds a frame",
-                           seconds / 3600, seconds / 60 % 60, seconds % 60, frame_s);
-}
-
+/* The time is an estimate; held frames take none. */
 static void tell_dry_run(const FlPlan *plan, double frame_s)
 {
     const FlShapes *shapes = &plan->shapes;
-    const int n = shapes->n_frames;
-    const char *movie = plan->out.movie ? plan->out.movie : "",
-               *and = plan->out.movie ? " and " : "";
-    g_autofree char *work =
-        g_strdup_printf("would paint %d frame%s of %dx%d pixels, %d region%s: %s%s%s", n, plural(n),
-                        shapes->page_width, shapes->page_height, shapes->n_painted,
-                        plural(shapes->n_painted), movie, and, written(plan));
-    g_autofree char *time = forecast(plan, frame_s);
-    g_autofree char *gaps = fl_drawing_left_out(shapes->drawing, plan->options.missing);
-    fl_note(&plan->caller, "%s", work);
-    if (gaps)
-        fl_note(&plan->caller, "%s", gaps);
-    fl_note(&plan->caller, "%s", time);
+    const int n = shapes->n_frames, pictures = (n - 1) / shapes->hold + 1;
+    const int lead_in = plan->options.loop ? fl_loop_length(pictures) : 0;
+    const int seconds = (int)(frame_s * (pictures + lead_in) + 0.5);
+    g_autofree char *files = written(&plan->out);
+    fl_note(&plan->caller, "would paint %d frame%s of %dx%d pixels, %d region%s: %s", n, plural(n),
+            shapes->page_width, shapes->page_height, shapes->n_painted, plural(shapes->n_painted),
+            files);
+    tell_gaps(plan);
+    fl_note(&plan->caller, "that would take about %d:%02d:%02d, %.2f seconds a frame",
+            seconds / 3600, seconds / 60 % 60, seconds % 60, frame_s);
 }
 
 /* ---- the whole ------------------------------------------------------------------------------- */
