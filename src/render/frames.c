@@ -298,28 +298,24 @@ static bool compose(FlFrames *frames, int frame, int next, bool marks, FlComposi
         return false;
     if (!composed)
         return true;
-    FlDrawList *draws = fl_drawing_unpack_draws(shapes->drawing, frames->draws, error);
+    g_autoptr(FlDrawList) draws = fl_drawing_unpack_draws(shapes->drawing, frames->draws, error);
     g_clear_pointer(&frames->draws, g_bytes_unref);
     frames->drawn = -1;
     if (!draws)
         return false;
     if (next >= 0 && frames->beside)
         start_drawing(frames, fl_drawing_shown(shapes->drawing, next));
-    if (frames->wet && marks && !fl_wet_frame(frames->wet, shown, error)) {
-        fl_draw_list_free(draws);
+    if (frames->wet && marks && !fl_wet_frame(frames->wet, shown, error))
         return false;
-    }
     frames->marked = shown;
     FlComposeInput input = compose_input(frames, shown);
     g_auto(FlContacts) contacts = {0};
     input.contacts = &contacts;
-    if (frames->contacts &&
-        !fl_contacts_find(&contacts, &plan->shapes, &input, draws, shown, error)) {
-        fl_draw_list_free(draws);
+    if (frames->contacts && !fl_contacts_find(&contacts, shapes, &input, draws, shown, error))
         return false;
-    }
     const bool made =
-        fl_composite_init(composite, &input, shown, draws, plan->out.format->takes_16, error) &&
+        fl_composite_init(composite, &input, shown, g_steal_pointer(&draws),
+                          plan->out.format->takes_16, error) &&
         (frames->small || shapes->width == shapes->page_width ||
          fl_composite_enlarge(composite, shapes->page_width, shapes->page_height, error));
     trim(plan);
