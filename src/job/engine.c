@@ -69,6 +69,11 @@ static void lazy_close(void *state)
     fl_lazy_free(state);
 }
 
+static void lazy_measure(void *state, bool energies)
+{
+    fl_lazy_measure(state, energies);
+}
+
 static bool lazy_frame(void *state, FlGuides *guides, const FlEnginePaint *paint, GError **error)
 {
     return fl_lazy_frame(state, guides, paint->rgb, paint->alpha, paint->stats, paint->view, error);
@@ -173,6 +178,7 @@ static const FlEngine engines[] = {
                               .plays = true,
                               .open = lazy_open,
                               .close = lazy_close,
+                              .measure = lazy_measure,
                               .frame = lazy_frame,
                               .guide_pairs = lazy_guide_pairs,
                               .save = lazy_save,

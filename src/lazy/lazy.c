@@ -41,6 +41,7 @@ struct FlLazy {
     FlNnf warm;                 // likewise: the carried field; empty in a first frame
     float *motion;              // likewise: 2 per pixel; NULL if there is no motion
     bool shows;                 // the frame in hand is inspected when it is painted
+    bool wants_terms;           // in the statistics
 };
 
 static FlFluidWeights weights_of(const FlParams *params)
@@ -366,6 +367,11 @@ static bool retrieve(FlLazy *lazy, int l, uint64_t key, FlLevelStats *stats, GEr
     return true;
 }
 
+void fl_lazy_measure(FlLazy *lazy, bool terms)
+{
+    lazy->wants_terms = terms;
+}
+
 static double square(double v)
 {
     return v * v;
@@ -422,7 +428,8 @@ static bool run_level(FlLazy *lazy, int l, FlLevelStats *stats, GError **error)
         if (!retrieve(lazy, l, fl_key(key, 2 + (uint64_t)round), stats, error))
             return false;
     }
-    measure_terms(lazy, l, stats);
+    if (lazy->wants_terms)
+        measure_terms(lazy, l, stats);
     return true;
 }
 

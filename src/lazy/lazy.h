@@ -21,6 +21,9 @@ FlLazy *fl_lazy_new(const FlExemplar *exemplar, const FlParams *params, FlRecord
                     FlSynthSize size, uint64_t seed, GError **error);
 void fl_lazy_free(FlLazy *lazy); // NULL is fine
 
+/** Switches the terms of the energy in the statistics on or off (default: off). */
+void fl_lazy_measure(FlLazy *lazy, bool terms);
+
 /**
  * Paints the next frame with the exemplar's frame in step; see FlRecordingEnd. rgb:
  * width * height * 3 sRGB, its paper without paint: as composited over the paper, but straight
