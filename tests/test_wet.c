@@ -19,6 +19,7 @@ typedef struct Scene {
     FlWetShape shape;
     FlWetDials dials;
     float spin; // of the disk around its middle, radians a frame
+    float pace; // of the disk in the frame before; 0: not known
     GArray *fronts, *stains, *below;
 } Scene;
 
@@ -88,7 +89,9 @@ static void mark(Scene *scene, float x0, float x1, float grown)
     g_assert_true(fl_distance(scene->now, SIDE, SIDE, scene->distance, NULL));
     was.now = scene->before;
     g_assert_true(fl_moving_edge_look(&before, &was, NULL));
-    before.n = 0; // it has no motion of its own
+    for (int i = 0; i < before.n; i++)
+        before.point[i].pace = scene->pace;
+    before.n = scene->pace > 0 ? before.n : 0;
     scene->shape.distance_before = before.distance;
     g_assert_true(fl_distance(scene->ahead, SIDE, SIDE, scene->beyond, NULL));
     for (int p = 0; p < PIXELS; p++)
@@ -159,6 +162,19 @@ static void test_quick(void)
     mark(scene, 60, 84, 0);
     g_assert_cmpfloat(slow, >, 0.5f);
     g_assert_cmpfloat(mean_charge(scene, &area), <, 0.4f * slow);
+    scene_free(scene);
+}
+
+static void test_turn(void)
+{
+    Scene *scene = scene_new();
+    float area;
+    scene->pace = 4;
+    mark(scene, 60, 64, 0);
+    const float slow = mean_charge(scene, &area);
+    scene->pace = 60;
+    mark(scene, 60, 64, 0);
+    g_assert_cmpfloat(mean_charge(scene, &area), <, 0.5f * slow);
     scene_free(scene);
 }
 
@@ -353,6 +369,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/wet/a-front-runs-ahead-and-a-stain-stays-behind", test_ahead);
     g_test_add_func("/wet/a-quick-shape-leaves-less", test_quick);
+    g_test_add_func("/wet/a-turn-after-quick-motion-leaves-less", test_turn);
     g_test_add_func("/wet/a-disk-that-spins-passes-straight-on", test_spin);
     g_test_add_func("/wet/stains-know-how-far-their-sides-are", test_sides);
     g_test_add_func("/wet/what-rests-marks-nothing", test_rest);
