@@ -250,7 +250,7 @@ static void colour_of_play(const uint8_t fill[3], int play, uint8_t colour[3], u
                        .medium = FL_MEDIUM_BODY,
                        .play = play ? plays : NULL,
                        .turn = {-.3f, 0, .4f},
-                       .reach = {1, 1}};
+                       .reach = {.5f, 1}};
     memcpy(how.fill, fill, 3);
     g_autofree uint8_t *rgba = colours_of_amounts(&how);
     memcpy(colour, rgba + 4 * FL_AMOUNT_ONE, 3);
@@ -266,10 +266,11 @@ static void two_pigments_turn_the_hue(void)
     colour_of_play(orange, 64, red, bare);
     g_assert_true(bare[0] == 255 && bare[1] == 255 && bare[2] == 255);
     colour_of_play(orange, 0, plain, bare);
-    colour_of_play(orange, -32, green, bare);
+    colour_of_play(orange, -64, green, bare);
     g_assert_true(red[1] == plain[1] && green[1] == plain[1]);
     g_assert_true(red[0] == 255 && red[2] < plain[2] * 3 / 4);
-    g_assert_true(green[0] < plain[0] * 9 / 10 && green[2] > plain[2] * 11 / 10);
+    g_assert_true(green[0] < plain[0] * 9 / 10 && green[0] > plain[0] * 8 / 10);
+    g_assert_cmpint(green[2], >, plain[2] * 11 / 10);
 }
 
 static void on_its_paper_every_medium_looks_the_same(void)

@@ -580,6 +580,7 @@ static void the_hue_turns_and_most_light_stays(void)
                        (double)a[2], (double)b[0], (double)b[1], (double)b[2]);
         g_assert_cmpfloat(fabsf(a[0] - b[0]), <, 5);
         g_assert_cmpfloat(hypotf(a[1] - b[1], a[2] - b[2]), >, 4);
+        g_assert_cmpfloat(hypotf(b[1], b[2]), >, hypotf(a[1], a[2])); // a pure shadow
     }
 }
 

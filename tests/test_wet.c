@@ -43,6 +43,7 @@ static Scene *scene_new(void)
                                 .stain_time = 7,
                                 .fibres = {.seed = 5}};
     g_assert_true(fl_wet_sheet_init(&scene->sheet, NULL));
+    fl_wet_sheet_begin(&scene->sheet);
     scene->shape = (FlWetShape){.rect = page,
                                 .page = page,
                                 .px = 1,
@@ -226,10 +227,12 @@ static void test_vanish(void)
     scene_free(scene);
 }
 
-/* A front is left where its disk slides on, and is taken away where the disk is suddenly far. */
+/* A front is left where its disk slides on, and is taken away where the disk is suddenly far or the
+ * paper keeps none of its paint. */
 static void test_jump(void)
 {
-    for (int jumps = 0; jumps < 2; jumps++) {
+    for (int k = 0; k < 3; k++) {
+        const bool jumps = k == 1, leaves_none = k == 2;
         Scene *scene = scene_new();
         mark(scene, 60, 66, 0);
         g_autoptr(GArray) fronts = g_array_ref(scene->fronts), lost = NULL;
@@ -238,8 +241,10 @@ static void test_jump(void)
         draw_disk(jumps ? 160 : 72, jumps ? 10 : RADIUS, scene->now);
         memset(scene->motion, 0, sizeof scene->motion);
         g_assert_true(fl_moving_edge_look(&edge, &scene->shape, NULL));
+        for (int i = 0; i < edge.n; i++)
+            edge.point[i].speed = -20, edge.point[i].kept = leaves_none ? 0 : 1;
         fl_marks_lose_fronts(&scene->shape, &edge, fronts, lost);
-        if (jumps)
+        if (jumps || leaves_none)
             g_assert_cmpuint(lost->len, >, fronts->len / 2);
         else
             g_assert_cmpuint(lost->len, ==, 0);
@@ -364,6 +369,41 @@ static void test_turned(void)
     scene_free(scene);
 }
 
+static void test_taken_up(void)
+{
+    Scene *scene = scene_new();
+    mark(scene, 80, 86, 0);
+    fl_wet_sheet_stain(&scene->sheet, &plain, scene->stains);
+    g_assert_cmpfloat(stain_of(scene), >, 20);
+    for (guint i = 0; i < scene->stains->len; i++) {
+        FlStainMark *mark = &g_array_index(scene->stains, FlStainMark, i);
+        mark->charge = 0, mark->lost = 1, mark->depth = 5;
+    }
+    fl_wet_sheet_stain(&scene->sheet, &plain, scene->stains);
+    g_assert_cmpfloat(stain_of(scene), ==, 0);
+    scene_free(scene);
+}
+
+/* The darkness of a stain all of which is so far from its sides. */
+static double darkness_of_depth(float depth)
+{
+    Scene *scene = scene_new();
+    mark(scene, 80, 86, 0);
+    for (guint i = 0; i < scene->stains->len; i++)
+        g_array_index(scene->stains, FlStainMark, i).depth = depth;
+    fl_wet_sheet_stain(&scene->sheet, &plain, scene->stains);
+    const double sum = darkness(scene);
+    scene_free(scene);
+    return sum;
+}
+
+static void test_frayed(void)
+{
+    const double middle = darkness_of_depth(14), sides = darkness_of_depth(5);
+    g_assert_cmpfloat(sides, >, 0.05 * middle);
+    g_assert_cmpfloat(sides, <, 0.8 * middle);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -372,6 +412,8 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/a-turn-after-quick-motion-leaves-less", test_turn);
     g_test_add_func("/wet/a-disk-that-spins-passes-straight-on", test_spin);
     g_test_add_func("/wet/stains-know-how-far-their-sides-are", test_sides);
+    g_test_add_func("/wet/paint-that-passes-takes-up-a-stain", test_taken_up);
+    g_test_add_func("/wet/a-stain-breaks-up-towards-its-sides", test_frayed);
     g_test_add_func("/wet/what-rests-marks-nothing", test_rest);
     g_test_add_func("/wet/what-vanishes-leaves-less-than-what-recedes", test_vanish);
     g_test_add_func("/wet/fronts-go-with-a-shape-that-jumps", test_jump);
