@@ -403,6 +403,28 @@ static void a_gradient_has_the_fill_of_its_body(void)
     }
 }
 
+/* Paint that dried last is darker than paint that dried first, also where their edge is lost. */
+static void a_drying_line_parts_two_tones(void)
+{
+    enum { N = 201 };
+    float values[FL_WASH_PLANES][N] = {{0}}, tones[N], hues[N];
+    FlWash wash = {.style = {.wash = 1, .tide = 1}, .brush_px = 50, .width = N, .height = 1};
+    for (int k = 0; k < FL_WASH_PLANES; k++)
+        wash.plane[k] = values[k];
+    for (int found = 0; found < 2; found++) {
+        for (int i = 0; i < N; i++) {
+            values[FL_WASH_TIDE][i] = (float)(i - N / 2), values[FL_WASH_TIDES][i] = (float)found;
+            values[FL_WASH_LINES][i] = 1, values[FL_WASH_BLOOM][i] = 1000;
+        }
+        fl_wash_find_tones(&wash, tones, hues);
+        g_assert_cmpfloat(tones[N - 1] - tones[0], >, .2f);
+        float most = 0; // of a step
+        for (int i = 1; i < N; i++)
+            most = MAX(most, fabsf(tones[i] - tones[i - 1]));
+        g_assert_true(found ? most > .05f : most < .01f);
+    }
+}
+
 /* Parts of a fill that move apart: no line where one's wash passes into the other's. */
 static void parts_that_move_apart_are_mixed(void)
 {
@@ -672,6 +694,7 @@ int main(int argc, char **argv)
                     touching_shapes_of_one_fill_are_one_wash);
     g_test_add_func("/wash/a-gradient-has-the-fill-of-its-body",
                     a_gradient_has_the_fill_of_its_body);
+    g_test_add_func("/wash/a-drying-line-parts-two-tones", a_drying_line_parts_two_tones);
     g_test_add_func("/wash/parts-that-move-apart-are-mixed", parts_that_move_apart_are_mixed);
     g_test_add_func("/wash/dots-and-lines-have-none", dots_and_lines_have_none);
     g_test_add_func("/wash/a-calm-wash-keeps-rims", a_calm_wash_keeps_rims);
