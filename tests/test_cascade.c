@@ -407,6 +407,26 @@ static void each_kind_that_is_left_out_is_told_once(void)
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 2)->text, "nonsense"));
 }
 
+static void values_that_librsvg_leaves_out_are_told(void)
+{
+    static const char *const cases[][2] = {
+        {"<mask id='a' color-interpolation='linearRGB'/>", "colours are those of sRGB"},
+        {"<mask id='a' color-interpolation='sRGB'/>", NULL},
+        {"<image id='a' style='image-rendering:pixelated'/>", "the image is smoothed"},
+        {"<image id='a' image-rendering='auto'/>", NULL},
+        {"<clipPath><path id='a' clip-path='url(#c)'/></clipPath><clipPath id='c'/>", "the clip"},
+        {"<clipPath><path id='a' clip-path='none'/></clipPath>", NULL},
+        {"<path id='a' clip-path='url(#c)'/><clipPath id='c'/>", NULL}};
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_autoptr(FlWarnings) warnings = fl_warnings_new();
+        g_test_message("%s", cases[i][0]);
+        g_free(computed(cases[i][0], "a", "fill", warnings));
+        g_assert_cmpint(fl_warnings_count(warnings), ==, cases[i][1] != NULL);
+        if (cases[i][1])
+            g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, cases[i][1]));
+    }
+}
+
 /* Variables that grow, selectors without end and brackets in brackets end in time. */
 static void hostile_sheets_come_to_an_end(void)
 {
@@ -441,6 +461,7 @@ int main(int argc, char **argv)
     TEST(images_keep_their_shape);
     TEST(gaps_of_librsvg_are_filled);
     TEST(each_kind_that_is_left_out_is_told_once);
+    TEST(values_that_librsvg_leaves_out_are_told);
     TEST(hostile_sheets_come_to_an_end);
     return g_test_run();
 }
