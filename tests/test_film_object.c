@@ -316,6 +316,12 @@ static void a_config_of_text_reads_no_drawing_anew(void)
     g_autofree uint8_t *again = frame_of(test->film, 3);
     g_assert_cmpmem(again, 4 * WIDTH * HEIGHT, plain, 4 * WIDTH * HEIGHT);
     g_assert_cmpint(fl_film_stats(test->film)->n_read, ==, 1);
+    g_autofree char *keyed =
+        g_strdup_printf("[region red-*]\nstyle = %s@0 %s@3\n", test->other_style, test->style);
+    set_config(test, keyed);
+    g_autofree uint8_t *changed = frame_of(test->film, 3);
+    g_assert_true(memcmp(plain, changed, 4 * WIDTH * HEIGHT) != 0);
+    g_assert_cmpint(fl_film_stats(test->film)->n_read, ==, 1);
     set_config(test, "[region red-aa3311]\npassthrough = on\n"); // another set of regions
     g_free(frame_of(test->film, 3));
     g_assert_cmpint(fl_film_stats(test->film)->n_read, ==, 2);

@@ -96,9 +96,9 @@ bool fl_guard_pictures(const FlDrawing *drawing, const FlRenderOptions *options,
                        const char *pattern, GError **error);
 
 /** The settings of a region: those that its style gives come before all others, those in the names
- * of its layers override those for all regions. label: FlRegion.label or NULL. Other arguments and
- * errors as of fl_config_region_settings(). */
-bool fl_plan_region_settings(const FlConfig *config, int rule, const char *region,
+ * of its layers override those for all regions. matched: as for fl_config_rule(); label:
+ * FlRegion.label or NULL. Other arguments and errors as of fl_config_region_settings(). */
+bool fl_plan_region_settings(const FlConfig *config, int matched, const char *region,
                              const char *label, FlGiven given, FlRegionSettings *settings,
                              GError **error);
 

@@ -142,10 +142,11 @@ static bool read_label(const FlConfig *config, int rule, const char *region, con
     return true;
 }
 
-bool fl_plan_region_settings(const FlConfig *config, int rule, const char *region,
+bool fl_plan_region_settings(const FlConfig *config, int matched, const char *region,
                              const char *label, FlGiven given, FlRegionSettings *settings,
                              GError **error)
 {
+    const int rule = fl_config_rule(config, matched, region);
     g_auto(FlOverrides) of_label = {0}, of_style = {0};
     if (!read_label(config, rule, region, label, given, &of_label, error) ||
         !fl_config_region_settings(config, rule, region, given, NULL, settings, error))
@@ -201,8 +202,7 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
     FlRegionPlan *chosen = &shapes->painted[shapes->n_painted];
     FlRegionSettings *settings = &chosen->settings;
     const bool left_out = is_left_out(plan, r->name);
-    const int rule = fl_config_rule(plan->config, r->rule, r->name);
-    if (!fl_plan_region_settings(plan->config, rule, r->name, r->label, given_of(plan), settings,
+    if (!fl_plan_region_settings(plan->config, r->rule, r->name, r->label, given_of(plan), settings,
                                  error))
         return false;
     const bool painted = r->paintable && settings->passthrough != FL_PASSTHROUGH_YES;
