@@ -107,7 +107,7 @@ head -c 1100000 /dev/zero | tr '\0' '#' >long.conf
 { printf PIEH && le 48 48 && for _ in $(seq 4608); do printf '\0\0\300\177'; done; } >nan_1.flo
 echo hello >text_1.flo
 png clear.png 48x48 red@0
-mkdir -p dumped/red-aa3311 page && cp clear.png dumped/red-aa3311/ && cp clear.png shows/sub/p_1.png && touch page/index.html
+mkdir -p dumped/red-aa3311 page && cp clear.png dumped/red-aa3311/ && cp clear.png shows/sub/p_1.png && touch page/index.html page/conf.png
 ln -s good/a_1.svg link.svg
 touch taken
 
@@ -171,6 +171,7 @@ table() {
 2|styled/b.css: is read by this render; *|styled -y --stats styled/b.css -o y_%d.png
 2|dumped/red-aa3311/clear.png: is read by this render; *|good -y -b dumped/red-aa3311/clear.png --dump dumped -o y_%d.png
 2|page/index.html: is read by this render; *|good -y -c page/index.html --report page -o y_%d.png
+2|page/conf.png: is read by this render; *|good -y -c page/conf.png -c page/index.html --flat -f 1 -o page/conf.png
 2|x.mp4: maps are PNG files; expected .png|good --check -o x.mp4
 1|taken: cannot be written: Not a directory|good -o taken/x_%d.png
 1|taken: *|good --report taken -o x_%d.png

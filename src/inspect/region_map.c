@@ -437,7 +437,7 @@ static bool write_frames(const FlRenderOptions *options, const char *what, Write
         return false;
     g_autofree char *pattern = pattern_of(&subject, what, error);
     if (!pattern || !subject_read(&subject, error) ||
-        !fl_guard_pictures(subject.drawing, &subject.options, pattern, error))
+        !fl_guard_pictures(subject.drawing, subject.config, &subject.options, pattern, error))
         return false;
     const int n = fl_drawing_frames(subject.drawing);
     for (int f = 0; f < n; f++)

@@ -92,8 +92,8 @@ bool fl_plan_find_output(FlPlan *plan, GError **error);
  * pattern: their name, with a frame number or without. Styles that a config names are not looked
  * at. Returns: false with FL_ERROR_USAGE set, naming the file.
  */
-bool fl_guard_pictures(const FlDrawing *drawing, const FlRenderOptions *options,
-                       const char *pattern, GError **error);
+bool fl_guard_pictures(const FlDrawing *drawing, const FlConfig *config,
+                       const FlRenderOptions *options, const char *pattern, GError **error);
 
 /** The settings of a region: those that its style gives come before all others, those in the names
  * of its layers override those for all regions. matched: as for fl_config_rule(); label:

@@ -126,15 +126,16 @@ bool fl_plan_find_output(FlPlan *plan, GError **error)
            (o->dry_run || o->verify || fl_resume_expect_free(plan, sequence, error));
 }
 
-/* Adds config, paper, background, flow and the paint that a merge reads. regions ends in NULL. */
-static void list_files(FlInputs *inputs, const FlRenderOptions *options, const FlDrawing *drawing,
-                       const char *const *regions)
+/* Adds configs, paper, background, flow and the paint that a merge reads. regions ends in NULL. */
+static void list_files(FlInputs *inputs, const FlConfig *config, const FlRenderOptions *options,
+                       const FlDrawing *drawing, const char *const *regions)
 {
     const char *background = options->background;
     const char *const patterns[] = {background && fl_picture_named(background) ? background : NULL,
                                     options->directions, options->flow,
                                     options->merge ? options->paint : NULL};
-    fl_inputs_add_quietly(inputs, options->config);
+    for (guint k = 0; k < config->files->len; k++)
+        fl_inputs_add_quietly(inputs, config->files->pdata[k]);
     if (options->paper && fl_picture_named(options->paper)) // no word for a paper
         fl_inputs_add(inputs, options->paper);
     for (size_t k = 0; k < G_N_ELEMENTS(patterns); k++) {
@@ -150,19 +151,17 @@ void fl_plan_list_inputs(FlPlan *plan)
     g_autofree const char **regions = g_new0(const char *, shapes->n_painted + 1);
     for (int p = 0; p < shapes->n_painted; p++)
         regions[p] = shapes->painted[p].name;
-    list_files(plan->inputs, &plan->options, shapes->drawing, regions);
-    for (guint k = 0; k < plan->config->files->len; k++)
-        fl_inputs_add_quietly(plan->inputs, plan->config->files->pdata[k]);
+    list_files(plan->inputs, plan->config, &plan->options, shapes->drawing, regions);
     for (int k = fl_plan_earliest(plan); k < fl_drawing_earlier(shapes->drawing); k++)
         fl_inputs_add(plan->inputs, fl_drawing_found_files(shapes->drawing)[k]);
 }
 
-bool fl_guard_pictures(const FlDrawing *drawing, const FlRenderOptions *options,
-                       const char *pattern, GError **error)
+bool fl_guard_pictures(const FlDrawing *drawing, const FlConfig *config,
+                       const FlRenderOptions *options, const char *pattern, GError **error)
 {
     g_autoptr(FlInputs) inputs = fl_inputs_new(NULL, NULL);
     fl_inputs_add_drawing(inputs, drawing);
-    list_files(inputs, options, drawing, NULL);
+    list_files(inputs, config, options, drawing, NULL);
     for (size_t k = 0; k < options->n_settings; k++)
         if (fl_option_names_style(options->settings[k].name))
             fl_inputs_add_style(inputs, options->settings[k].value);

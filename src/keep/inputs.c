@@ -76,8 +76,7 @@ void fl_inputs_add(FlInputs *inputs, const char *path)
 
 void fl_inputs_add_quietly(FlInputs *inputs, const char *path)
 {
-    if (path)
-        (void)list(inputs, path);
+    (void)list(inputs, path);
 }
 
 static int by_name(const void *a, const void *b)

@@ -28,7 +28,7 @@ void fl_inputs_add_drawing(FlInputs *inputs, const FlDrawing *drawing);
 void fl_inputs_add_frames(FlInputs *inputs, const FlDrawing *drawing, const char *pattern,
                           const char *region);
 
-/** Adds a file without telling the caller; it may be NULL. */
+/** Adds a file without telling the caller. */
 void fl_inputs_add_quietly(FlInputs *inputs, const char *path);
 
 int fl_inputs_count(const FlInputs *inputs);

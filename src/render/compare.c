@@ -120,8 +120,8 @@ static bool comparison_init(Comparison *c, const Kind *kind, const FlRenderOptio
     silent.warning = NULL, silent.note = NULL; // the renders repeat them
     if (!name_files(c, &complete, error) ||
         !(c->drawing = fl_drawing_from_options(&complete, c->config, &silent, error)) ||
-        !fl_guard_pictures(c->drawing, &complete, c->path, error) ||
-        (c->page && !fl_guard_pictures(c->drawing, &complete, c->page, error)))
+        !fl_guard_pictures(c->drawing, c->config, &complete, c->path, error) ||
+        (c->page && !fl_guard_pictures(c->drawing, c->config, &complete, c->page, error)))
         return false;
     const int width = fl_drawing_width(c->drawing), height = fl_drawing_height(c->drawing);
     const double scale = MIN(1, (double)SHOWN_PX / MAX(width, height));
