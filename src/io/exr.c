@@ -139,8 +139,9 @@ static bool add_mattes(Writer *writer)
 static const exr_attr_chromaticities_t rec_709 = {.64f, .33f, .30f,   .60f,
                                                   .15f, .06f, .3127f, .3290f};
 
-static bool put_header(Writer *writer, const Layer *whole, const FlSinkFrame *frame)
+static bool put_header(Writer *writer, const Layer *whole)
 {
+    const FlSinkFrame *frame = writer->frame;
     if (!went(writer, exr_set_longname_support(writer->context, 1)) ||
         !went(writer, exr_add_part(writer->context, "frame", EXR_STORAGE_SCANLINE, NULL)) ||
         !went(writer, exr_initialize_required_attr_simple(writer->context, 0, writer->width,
@@ -159,25 +160,23 @@ static bool put_header(Writer *writer, const Layer *whole, const FlSinkFrame *fr
            went(writer, exr_get_scanlines_per_chunk(writer->context, 0, &writer->chunk_rows));
 }
 
-/** Finds out what a channel of the file holds: its order is OpenEXR's own. */
-static void map_channel(Writer *writer, int channel, const char *name, const Layer *whole,
-                        const FlSinkFrame *frame)
+/** Finds the picture of a channel of the file, whose order is OpenEXR's own. */
+static void map_channel(Writer *writer, int channel, const char *name, const Layer *whole)
 {
+    const FlSinkFrame *frame = writer->frame;
     const char *dot = strrchr(name, '.');
     const size_t length = dot ? (size_t)(dot - name) : 0;
     writer->component[channel] = (int)(strchr(components, dot ? dot[1] : name[0]) - components);
-    writer->layer[channel] = whole;
-    if (has_mattes(writer) && g_str_has_prefix(name, FL_MATTES)) {
-        writer->layer[channel] = NULL;
-        writer->component[channel] += 4 * atoi(name + strlen(FL_MATTES));
-    }
+    writer->layer[channel] = dot ? NULL : whole;
     for (int k = 0; k < frame->n_layers && dot; k++)
         if (strlen(frame->layers[k].name) == length &&
             strncmp(frame->layers[k].name, name, length) == 0)
             writer->layer[channel] = &frame->layers[k];
+    if (!writer->layer[channel])
+        writer->component[channel] += 4 * atoi(name + strlen(FL_MATTES));
 }
 
-static bool list_channels(Writer *writer, const Layer *whole, const FlSinkFrame *frame)
+static bool list_channels(Writer *writer, const Layer *whole)
 {
     const exr_attr_chlist_t *list;
     if (!went(writer, exr_get_channels(writer->context, 0, &list)))
@@ -186,7 +185,7 @@ static bool list_channels(Writer *writer, const Layer *whole, const FlSinkFrame 
     writer->layer = g_new(const Layer *, writer->n_channels);
     writer->component = g_new(int, writer->n_channels);
     for (int c = 0; c < writer->n_channels; c++) {
-        map_channel(writer, c, list->entries[c].name.str, whole, frame);
+        map_channel(writer, c, list->entries[c].name.str, whole);
         writer->row_units += writer->layer[c] ? 1 : 2;
     }
     return true;
@@ -219,13 +218,12 @@ static bool chunk_init(Chunk *chunk, const Writer *writer, GError **error)
 {
     const size_t rows = (size_t)writer->row_units * writer->chunk_rows;
     const size_t width = (size_t)writer->width;
-    const size_t row_bytes = sizeof *chunk->halves * (size_t)writer->width;
+    const size_t row_bytes = sizeof *chunk->halves * width;
     chunk->compressor = libdeflate_alloc_compressor(ZIP_LEVEL);
     chunk->halves = fl_alloc_unset(rows, row_bytes, "an OpenEXR file", error);
     chunk->bytes = chunk->halves ? fl_alloc_unset(rows, row_bytes, "an OpenEXR file", error) : NULL;
     chunk->packed = chunk->bytes ? fl_alloc_unset(rows, row_bytes, "an OpenEXR file", error) : NULL;
-    chunk->rgba =
-        chunk->packed ? fl_alloc((size_t)writer->width, 4, "an OpenEXR file", error) : NULL;
+    chunk->rgba = chunk->packed ? fl_alloc(width, 4, "an OpenEXR file", error) : NULL;
     float *mattes = chunk->rgba ? fl_alloc(width * (FL_MATTES_CHANNELS + 1), sizeof *mattes,
                                            "an OpenEXR file", error)
                                 : NULL;
@@ -367,10 +365,10 @@ static bool put_rows(Writer *writer, GError **error)
     return fl_parallel_error_propagate(error, first) && put;
 }
 
-static bool put_file(Writer *writer, FlAtomicFile *file, const FlSinkFrame *frame, GError **error)
+static bool put_file(Writer *writer, FlAtomicFile *file, GError **error)
 {
     const Layer whole = {
-        .name = "", .width = writer->width, .height = writer->height, .rgba = frame->rgba};
+        .name = "", .width = writer->width, .height = writer->height, .rgba = writer->frame->rgba};
     exr_context_initializer_t context = EXR_DEFAULT_CONTEXT_INITIALIZER;
     context.user_data = file;
     context.write_fn = write_bytes;
@@ -378,8 +376,8 @@ static bool put_file(Writer *writer, FlAtomicFile *file, const FlSinkFrame *fram
     if (!went(writer,
               exr_start_write(&writer->context, file->path, EXR_WRITE_FILE_DIRECTLY, &context)))
         return false;
-    const bool put = put_header(writer, &whole, frame) && list_channels(writer, &whole, frame) &&
-                     put_rows(writer, error);
+    const bool put =
+        put_header(writer, &whole) && list_channels(writer, &whole) && put_rows(writer, error);
     return went(writer, exr_finish(&writer->context)) && put;
 }
 
@@ -396,7 +394,7 @@ static bool exr_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
     fill_halves();
     for (int k = 0; k < frame->n_layers; k++)
         ids[k] = frame->layers[k].region ? fl_matte_id(frame->layers[k].region) : 0;
-    const bool put = put_file(&writer, &sink->file, frame, &problem);
+    const bool put = put_file(&writer, &sink->file, &problem);
     g_free(writer.layer);
     g_free(writer.component);
     if (problem)
