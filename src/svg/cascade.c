@@ -571,7 +571,7 @@ static void compute_attributes(Cascade *c, xmlNode *node, const Style *style)
 /** Returns: true if a property places an element; Chromium leaves those of nested <svg> out. */
 static bool takes_geometry(const xmlNode *node, const char *name)
 {
-    const bool nested = fl_is(node, "svg") && node->parent->type == XML_ELEMENT_NODE;
+    const bool nested = fl_is(node, "svg") && !fl_is_root(node);
     return !nested && (!fl_is(node, "use") || strlen(name) == 1);
 }
 
@@ -634,7 +634,6 @@ static char *own_colour(Cascade *c, const xmlNode *node, const GArray *values, c
 
 static void visit(Cascade *c, xmlNode *node, const Style *around)
 {
-    const bool root = !node->parent || node->parent->type != XML_ELEMENT_NODE;
     g_autoptr(xmlChar) written = fl_attribute(node, "style");
     g_autoptr(GArray) own = fl_css_declarations(written ? (const char *)written : "");
     g_autoptr(GArray) values = declared_values(c, node, own);
@@ -656,7 +655,7 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
         }
     }
     if (font_size)
-        set_font_size(&style, font_size, root);
+        set_font_size(&style, font_size, fl_is_root(node));
     g_autofree char *colour = own_colour(c, node, values, &style);
     style.colour = colour ? colour : style.colour;
     GString *text = g_string_new(NULL);

@@ -90,11 +90,6 @@ static bool own_box(const xmlNode *node, const char *kind, const FlCssUnits *uni
 
 /* ---- transforms ------------------------------------------------------------------------------ */
 
-static bool is_root(const xmlNode *node)
-{
-    return !node->parent || node->parent->type != XML_ELEMENT_NODE;
-}
-
 /** The box that percentages and the origin refer to [CSS Transforms 1 §5]; the page of the root. */
 static FlCssBox reference_box(const FlCssEffects *effects, const xmlNode *node,
                               const FlCssUnits *units, bool *known)
@@ -102,7 +97,7 @@ static FlCssBox reference_box(const FlCssEffects *effects, const xmlNode *node,
     static const char *const own[] = {"fill-box", "content-box", "stroke-box", "border-box", NULL};
     g_autofree char *kind = value_or_attribute(effects, node, "transform-box");
     FlCssBox box = {0, 0, units->width, units->height};
-    if (is_root(node))
+    if (fl_is_root(node))
         box = (FlCssBox){0, 0, units->page_width, units->page_height};
     else if (kind && g_strv_contains(own, kind))
         *known = own_box(node, kind, units, &box) || !fl_is(node, "text");
@@ -192,10 +187,10 @@ static const char *apply_transform(const FlCssEffects *effects, xmlNode *node,
     const char *translate = value_of(effects, "translate"), *rotate = value_of(effects, "rotate");
     const char *scale = value_of(effects, "scale");
     const bool moves = css || translate || rotate || scale || value_of(effects, "offset-path") ||
-                       (attribute && (origin_text || is_root(node)));
+                       (attribute && (origin_text || fl_is_root(node)));
     if (!moves)
         return NULL;
-    if (!origin_text && is_root(node))
+    if (!origin_text && fl_is_root(node))
         origin_text = g_strdup("center");
     bool flat = true, known = true;
     const FlCssBox box = reference_box(effects, node, units, &known);
@@ -379,10 +374,9 @@ static const char *apply_background(const FlCssEffects *effects, xmlNode *node,
                                     const FlCssUnits *units)
 {
     const char *name = value_of(effects, "background-color") ? "background-color" : "background";
-    const char *value = value_of(effects, name);
-    const bool root = is_root(node);
-    g_autofree char *colour = value && root ? fl_css_colour(value) : NULL;
-    if (!value || !root || (colour && strcmp(colour, "transparent") == 0))
+    const char *value = fl_is_root(node) ? value_of(effects, name) : NULL;
+    g_autofree char *colour = value ? fl_css_colour(value) : NULL;
+    if (!value || (colour && strcmp(colour, "transparent") == 0))
         return NULL;
     if (!colour)
         return name;

@@ -24,6 +24,11 @@ bool fl_is_one_of(const xmlNode *node, const char *const *names)
     return false;
 }
 
+bool fl_is_root(const xmlNode *node)
+{
+    return !node->parent || node->parent->type != XML_ELEMENT_NODE;
+}
+
 bool fl_is_container(const xmlNode *node)
 {
     static const char *const containers[] = {"g", "svg", "a", NULL};

@@ -41,6 +41,9 @@ bool fl_is(const xmlNode *node, const char *name);
 /** Returns: true if node is an SVG element whose name is in a NULL-terminated list. */
 bool fl_is_one_of(const xmlNode *node, const char *const *names);
 
+/** Returns: true if an element is in no other one. */
+bool fl_is_root(const xmlNode *node);
+
 /** Returns: true if node is a container of elements: <g>, <svg> or <a>. */
 bool fl_is_container(const xmlNode *node);
 

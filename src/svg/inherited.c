@@ -62,7 +62,7 @@ static FlAffine fit_box(const double box[4], double width, double height, const 
 /** An <svg>: its place, its viewport and its viewBox. */
 static void enter_viewport(const FlInheritance *inheritance, const xmlNode *node, FlInherited *s)
 {
-    const bool outermost = !node->parent || node->parent->type != XML_ELEMENT_NODE;
+    const bool outermost = fl_is_root(node);
     const double w = s->width, h = s->height;
     bool *broken = &s->broken;
     double box[4] = {0, 0, 0, 0};

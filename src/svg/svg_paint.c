@@ -331,7 +331,7 @@ static Around within(const Around *around, const xmlNode *group)
 /** The effects of all groups around an element. */
 static Around around_of(const xmlNode *node)
 {
-    if (!node->parent || node->parent->type != XML_ELEMENT_NODE)
+    if (fl_is_root(node))
         return (Around){.opacity = 1};
     const Around outer = around_of(node->parent);
     return outer.filtered ? outer : within(&outer, node->parent);
