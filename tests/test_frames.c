@@ -454,7 +454,7 @@ int main(int argc, char **argv)
          fill_and_stroke_are_taken_apart_unless_they_are_one_colour);
     TEST("gradients-are-known-by-their-stops", gradients_are_known_by_their_stops);
     TEST("a-gradient-of-one-colour-is-flat", a_gradient_of_one_colour_is_flat);
-    TEST("gradients-may-be-in-another-frame", gradients_may_be_in_other_frames);
+    TEST("gradients-may-be-in-other-frames", gradients_may_be_in_other_frames);
     TEST("patterns-and-filters-are-images", patterns_and_filters_are_images);
     TEST("hidden-and-undrawn-content-is-no-leaf", hidden_and_undrawn_content_is_no_leaf);
     TEST("use-and-switch-show-their-content", use_and_switch_show_their_content);

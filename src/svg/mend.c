@@ -176,8 +176,7 @@ static void mend_clip(xmlNode *node, GHashTable *ids)
 /* ---- symbols --------------------------------------------------------------------------------- */
 
 /** librsvg cuts a <symbol> off at its viewBox, a browser at the place where <use> shows it: it is
- * copied to that place. A cycle is left for fl_document_normalise() to tell.
- */
+ * copied to that place. A cycle is left for fl_document_normalise() to tell. */
 static void mend_use(xmlNode *use, GHashTable *ids, int *n_copied)
 {
     const xmlNode *target = fl_shown_by_use(use, ids);
