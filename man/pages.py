@@ -24,7 +24,7 @@ DIALS = [("wash", "05", "0 1 2"), ("light", "05", "0 62 180"), ("passes", "05", 
          ("palette", "01", "drawing paint"), ("marks", "04", "off charcoal pastel"), ("marks-angle", "10", "0 -58 90"),
          ("gaps", "05", "0 .5 1"), ("edges", "02", "closed soft"), ("front", "01", "0 .8 2"), ("stain", "01", "0 .8 1"),
          ("overrun", "01", "2 5 10"), ("carry", "08", "0 .5 1"), ("line", "05", "plain pen brush"),
-         ("paper-relief", "05", "0 .8 1.6"), ("style-scale", "01", ".5 1 2"), ("strength", "11", ".3 .6 1")]
+         ("paper-relief", "05", "0 .3 1"), ("style-scale", "01", ".5 1 2"), ("strength", "11", ".3 .6 1")]
 DRAWING = "fixtures/animations/snowman-wave-layers"
 MOVING = ("front", "stain", "overrun", "carry")  # dials of which a first frame shows nothing
 # A film for the dials: two shapes that touch, one of them moving, and a line.

@@ -136,8 +136,8 @@ static int parts_of(const FlLiveJob *job)
                                         : HAS_DRAFT;
 }
 
-/* The asker counts as one that has what it gets, but for the drawing, which it keeps when settings
- * change and which an interrupted job does not give. */
+/* Notes the parts as if the asker had them already, so that its next job is another one. Drawings
+ * are noted when they come: they outlast a change of settings, which interrupts jobs. */
 static void ask(Client *client, FlLiveJob *job)
 {
     FlLiveClients *clients = client->clients;
@@ -271,7 +271,7 @@ static void take_facts(FlLiveClients *clients, const FlLiveJob *job)
     fl_live_clients_say(clients, clients->facts);
 }
 
-/* Pictures go to the page that has asked and to all that lack them, samples to the first alone. */
+/* Pictures go to the page that has asked and to all that lack them, samples only to the asker. */
 static void give(Client *client, const FlLiveJob *job)
 {
     const int parts = parts_of(job);

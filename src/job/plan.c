@@ -137,7 +137,7 @@ static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
         return false;
     choose_size(plan, before);
     // styles may be enlarged, for which too little memory would end the program
-    if (!fl_limit_check(FL_LIMIT_MEMORY, ceil(fl_shapes_least_bytes(&plan->shapes) / (1 << 20)),
+    if (!fl_limit_check(FL_LIMIT_MEMORY, ceil(fl_shapes_least_bytes(shapes) / (1 << 20)),
                         fl_drawing_name(shapes->drawing), error) ||
         !fl_plan_choose_styles(plan, error))
         return false;
@@ -155,7 +155,7 @@ static char *pattern_below(const char *folder)
     return g_build_filename(name->str, FL_EBSYNTH_OUTPUT, NULL);
 }
 
-/* What is written, by the options as they were given, before the config has completed them. */
+/* Chooses the outputs, by the options as they were given, before the config has completed them. */
 static void choose_written(FlPlan *plan, const FlRenderOptions *given)
 {
     const FlRenderOptions *o = &plan->options;
@@ -210,7 +210,7 @@ static bool begin(FlPlan *plan, const FlPlan *before, const FlRenderOptions *opt
     return true;
 }
 
-/* What two plans have in common stays with the first one. */
+/* Leaves all that two plans share with the first one. */
 static void leave_shared(FlPlan *to, FlPlan *from)
 {
     if (from->config == to->config)
@@ -225,7 +225,7 @@ static void leave_shared(FlPlan *to, FlPlan *from)
         from->inputs = NULL;
 }
 
-/* Whether the masks of a plan with the same drawing, and what is around regions, are its own. */
+/* True if a plan has the masks, and the surroundings of regions, of one with the same drawing. */
 static bool has_masks_of(const FlPlan *plan, const FlPlan *before)
 {
     const FlShapes *shapes = &plan->shapes;

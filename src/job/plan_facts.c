@@ -105,9 +105,9 @@ static void add_painted(FlFacts *facts, const FlPlan *plan)
         const FlRegionPlan *painted = &shapes->painted[p];
         fl_facts_add_options(facts, FL_SCOPE_REGION, &painted->settings, painted->name);
         if (painted->flow_files)
-            add_pattern(facts, &plan->shapes, plan->inputs, painted->flow_files, painted->name);
+            add_pattern(facts, shapes, plan->inputs, painted->flow_files, painted->name);
         if (painted->paint_files)
-            add_pattern(facts, &plan->shapes, plan->inputs, painted->paint_files, painted->name);
+            add_pattern(facts, shapes, plan->inputs, painted->paint_files, painted->name);
         bool known = false;
         for (int q = 0; q < p; q++)
             known = known || g_str_equal(shapes->painted[q].style->path, painted->style->path);

@@ -13,7 +13,7 @@
 /* The current section; NOWHERE is above the first one, where keys are errors. */
 typedef enum Place { NOWHERE, PROJECT, DEFAULTS, REGION } Place;
 
-/* A file. What the config has already is of files that override this one. */
+/* The file that is read. Files that override it are in the config already. */
 typedef struct Reader {
     FlConfig *config;
     const char *path;
@@ -287,9 +287,10 @@ static bool read_file(FlConfig *config, const FlRenderOptions *caller, const cha
     const FlKeyReader calls = {
         read_section, read_entry, &reader, FL_ERROR_USAGE, included ? NULL : &wait, text};
     if (config->files->len >= MOST_FILES)
-        return fl_fail(error, FL_ERROR_USAGE,
-                       "%s: more than %d files include each other; it may include itself", path,
-                       MOST_FILES);
+        return fl_fail(
+            error, FL_ERROR_USAGE,
+            "%s: more than %d files include each other; expected none that includes itself", path,
+            MOST_FILES);
     g_ptr_array_add(config->files, g_strdup(path));
     if (caller && caller->reads)
         caller->reads(path, caller->data);

@@ -406,7 +406,7 @@ static bool make_sheet(FlFrames *frames, GError **error)
     g_clear_pointer(&frames->sheet, fl_paper_sheet_free);
     frames->sheet_of = (FlDigest){0};
     if (!fl_paper_sheet_make(&choice, !o->background, width, height, &frames->sheet, error) ||
-        (frames->sheet && fl_shapes_are_large(&plan->shapes) &&
+        (frames->sheet && fl_shapes_are_large(shapes) &&
          !fl_paper_sheet_put_away(frames->sheet, error)))
         return false;
     frames->sheet_of = made_of;
