@@ -125,10 +125,10 @@ static void hold(float velocity[2], float farthest)
 
 /* whole: by pixel of the old layer, then by pixel of the fresh one. Ink also stays in its shape. */
 static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, const float *whole,
-                          float strength, float *velocity)
+                          float *velocity)
 {
     const FlRect rect = ink->layers.old.rect;
-    const float farthest = FARTHEST * ink->input.scale;
+    const float farthest = FARTHEST * ink->input.scale, strength = (float)*ink->input.strength;
 #pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(fl_rect_pixels(rect)))
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
@@ -163,7 +163,7 @@ static float to_mean_one(const FlGuides *guides, FlRect rect, const float *carri
 }
 
 /* The map by which the ink of a frame moves. */
-static bool find_map(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, FlFlowMap *map,
+static bool find_map(const FlCarriedInk *ink, const FlGuides *guides, FlRect rect, FlFlowMap *map,
                      GError **error)
 {
     g_autofree float *velocity =
@@ -176,12 +176,12 @@ static bool find_map(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, FlF
         (layers->fresh.shift && !fl_material_whole(&layers->fresh, &layers->share, guides, reach,
                                                    whole + fl_rect_pixels(rect), error)))
         return false;
-    find_velocity(ink, guides, whole, (float)*ink->input.strength, velocity);
+    find_velocity(ink, guides, whole, velocity);
     fl_flow_map_run(map, velocity);
     return true;
 }
 
-static bool move_ink(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, float *amount,
+static bool move_ink(const FlCarriedInk *ink, const FlGuides *guides, FlRect rect, float *amount,
                      GError **error)
 {
     g_auto(FlFlowMap) map = {0};

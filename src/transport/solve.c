@@ -102,7 +102,7 @@ static bool fresh_moments(Solver *solver, GError **error)
     return true;
 }
 
-/* A stage's small random start, so that a flat region has something to break its symmetry. */
+/* Adds a small random start, which breaks the symmetry of flat ink. */
 static void add_noise(FlPotential *potential, uint64_t key)
 {
     for (int l = 0; l < FL_POTENTIAL_GRIDS; l++)
