@@ -13,8 +13,7 @@
 static inline FlTile *waves(void)
 {
     FlTile *tile = g_new0(FlTile, 1);
-    tile->style =
-        (FlTransportStyle){.size = 96, .taper_px = 5, .pace = 1, .effort = 1};
+    tile->style = (FlTransportStyle){.size = 96, .taper_px = 5, .pace = 1, .effort = 1};
     tile->spline = g_new(float, 96 * 96);
     for (int i = 0; i < 96 * 96; i++)
         tile->spline[i] = 15 * sinf((float)(i % 96) * 0.2618f) * cosf((float)(i / 96) * 0.1309f);

@@ -138,8 +138,8 @@ static void set_shade(FlColourCurve *curve, const Lightness *light, int64_t slop
     curve->shade[2] = (int32_t)shade;
 }
 
-/** Makes most of the shade more of the fill's own pigment, which is purer as well as darker; its
- * light stays. */
+/** Divides most of the shade among the channels as the fill's own density is: it gets purer, and
+ * darkens as much as before. */
 static void make_shade_pure(FlColourCurve *curve)
 {
     const Lightness light = lightness_of(curve);

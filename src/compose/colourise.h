@@ -20,7 +20,7 @@ typedef struct FlColouring {
     FlMedium medium;        // the opacity of the paint
     const int8_t *play;     // of the box: of fl_wash_lay(); NULL: paint of one pigment
     float turn[3];          // ln of a factor, by channel, where the second pigment prevails by one
-    float reach[2];         // share of it, 0..1, where the first or the second one prevails
+    float reach[2];         // 0..1: share of it towards the first pigment, and towards the second
     bool linear;            // the layers will be blended in linear light
 } FlColouring;
 

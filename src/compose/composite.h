@@ -12,7 +12,7 @@ typedef struct FlComposite {
     int n_layers;         // 0: not wanted apart
     FlLayer *layers;      // bottom first; their areas, rgba and knockout are owned
     char **names;         // of the layers, for files: unique in the frame
-    const char **regions; // of the layers: the names of the drawing's regions; that of the stain
+    const char **regions; // of the layers: the region's name in the drawing; the stain's own
     uint8_t *ground;      // the opaque colour or the picture below stored layers, if any; else NULL
     uint8_t *sheet;       // of paper, fl_paper_sheet_picture(), if layers are stored; else NULL
     uint8_t *rgba;        // width * height * 4 straight sRGBA

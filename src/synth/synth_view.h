@@ -11,7 +11,7 @@ typedef struct FlLevelStats {
     double energy_start, energy; // data terms of the field at the start and at the end
     // The terms at the end. The sum of the data terms exceeds the energy by the
     // difference of the two colours that the search blends: the last vote and T_temp.
-    // LazyFluids has three, which sum up to it.
+    // The sum of the three terms of LazyFluids, texture, bound and temporal, is the energy.
     double texture, bound, ext, direction, temporal, uniformity, coherence;
     FlSearchCounts counts;
     double seconds;

@@ -21,7 +21,7 @@ typedef struct FlStainMark {
     float lost;   // share of the cell's fronts that goes, 0..1
     float charge; // of paint on the paper
     float age;    // frames since it was uncovered
-    float depth;  // of the cell between the sides of the paint's way
+    float depth;  // of the cell inside the nearer side of the paint's way, cells
     float ink[3];
 } FlStainMark;
 
@@ -62,7 +62,7 @@ void fl_wet_sheet_clear(FlWetSheet *sheet);
 
 FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t cell);
 
-/** Says if a camera that has moved the paper so has neither turned nor come nearer. */
+/** Says if a map of the paper moves it without turning or scaling it. */
 static inline bool fl_wet_only_pans(const FlAffine *map)
 {
     return map->xx == 1 && map->yy == 1 && map->xy == 0 && map->yx == 0;
