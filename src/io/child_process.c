@@ -36,7 +36,7 @@ static void set_up(void *confinement)
 {
     setpgid(0, 0);
 #ifdef __linux__
-    prctl(PR_SET_PDEATHSIG, SIGKILL); // which a confined process is refused
+    prctl(PR_SET_PDEATHSIG, SIGKILL); // confinement would refuse it
 #endif
     if (confinement)
         fl_confinement_enter(confinement);
@@ -122,7 +122,7 @@ char *fl_child_stderr_tail(const FlChild *child)
     const off_t start = MAX(end - (off_t)sizeof text + 1, 0);
     const ssize_t n = pread(child->errors, text, sizeof text - 1, start);
     text[MAX(n, 0)] = '\0';
-    const char *cut = start > 0 ? strchr(text, '\n') : NULL; // ends a line whose begin is lost
+    const char *cut = start > 0 ? strchr(text, '\n') : NULL; // ends a line whose start is lost
     return g_strchomp(g_utf8_make_valid(cut && cut[1] ? cut + 1 : text, -1));
 }
 

@@ -51,7 +51,7 @@ void fl_matte_row_begin(FlMatteRow row)
         row.light[x] = 1;
 }
 
-/* Adds to the share of an id, which moves before smaller ones; a new one may put out the last. */
+/* Adds to the share of an id, and keeps the shares sorted; a new id may replace the last one. */
 static void add_share(FlMatteRow row, int x, guint32 id, float share)
 {
     const union {

@@ -294,7 +294,7 @@ static void make_mattes(Chunk *chunk, const Writer *writer, int y)
     }
 }
 
-/** Floats, the lower half of their bits first. */
+/** Writes floats, the lower 16 bits of each first. */
 static void put_floats(const float *value, int n, uint16_t *halves)
 {
     for (int x = 0; x < n; x++) {

@@ -68,7 +68,7 @@ static const char *kind_of(const guint8 *data, gsize bytes)
     return NULL;
 }
 
-/** A side in px; 0 if it is missing, a share of something else or a word. */
+/** A side in px; 0 if it is missing, a percentage or a word. */
 static double side_of(const xmlNode *node, const char *name)
 {
     static const FlCssUnits units = {.font_size = 16, .root_font_size = 16};
@@ -89,7 +89,7 @@ static bool is_auto(const xmlNode *node, const char *name)
     return !text || xmlStrEqual(text, (const xmlChar *)"auto");
 }
 
-/** Computes the side of an <image> that is not given from the other one. */
+/** Computes a missing side of an <image> from the other one. */
 static void complete_size(xmlNode *node, const int size[2])
 {
     const bool wide = is_auto(node, "width");

@@ -19,7 +19,7 @@ static xmlNode *element_beside(xmlNode *node, bool before)
 
 /* ---- drop shadows ---------------------------------------------------------------------------- */
 
-/** The name of what a filter's step reads, to be freed; a step before it is named if it must be. */
+/** The name of a filter step's input, to be freed; names the step before it if that has no name. */
 static char *name_input(xmlNode *step, int number)
 {
     xmlNode *before = element_beside(step, true);
@@ -46,7 +46,7 @@ static xmlNode *add_step(xmlNode *shadow, const char *name)
     return xmlAddPrevSibling(shadow, step);
 }
 
-/** Makes <feDropShadow>, which librsvg lacks, the steps that it stands for [Filter Effects 1]. */
+/** Replaces <feDropShadow>, which librsvg lacks, by its steps [Filter Effects 1]. */
 static void mend_shadow(xmlNode *node, int number)
 {
     static const char *const lengths[] = {"dx", "dy", "stdDeviation"};
@@ -140,7 +140,7 @@ static xmlNode *clip_of(const xmlNode *node, GHashTable *ids)
     return clip && fl_is(clip, "clipPath") ? clip : NULL;
 }
 
-/** Puts an element into a group that has the clip of its clip path, and is referred to. */
+/** Puts an element into a group, which takes its id and transform and the clip of its clip path. */
 static xmlNode *wrap(xmlNode *node, const xmlNode *clip)
 {
     static const char *const outer[] = {"id", "transform"};
