@@ -4,6 +4,7 @@
 
 #include <glib.h>
 #include <glib/gstdio.h>
+#include <stdio.h>
 
 /** Makes an empty folder; to be removed with scratch_remove(). */
 static inline char *scratch_make(void)
@@ -47,6 +48,14 @@ static inline char *scratch_svg(const char *folder, const char *name, const char
                         "viewBox=\"0 0 100 100\">%s</svg>",
                         content);
     return scratch_write(folder, name, text);
+}
+
+/** Writes a file without waiting for the disk. */
+static inline void scratch_put(const char *path, const char *data, gsize bytes)
+{
+    FILE *file = fopen(path, "wb");
+    g_assert_true(file && fwrite(data, 1, bytes, file) == bytes);
+    fclose(file);
 }
 
 #endif

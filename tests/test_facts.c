@@ -9,7 +9,6 @@
 #include "scratch.h"
 #include <fcntl.h>
 #include <fluidy/render.h>
-#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -19,20 +18,12 @@ typedef struct Film {
     char *inputs, *output, *cache, *style, *tile, *flow, *background, *paper, *config, *state;
 } Film;
 
-/* Writes a file without waiting for the disk. */
-static void put(const char *path, const char *data, gsize bytes)
-{
-    FILE *file = fopen(path, "wb");
-    g_assert_true(file && fwrite(data, 1, bytes, file) == bytes);
-    fclose(file);
-}
-
 static void copy_file(const char *from, const char *to)
 {
     g_autofree char *data = NULL;
     gsize bytes;
     g_assert_true(g_file_get_contents(from, &data, &bytes, NULL));
-    put(to, data, bytes);
+    scratch_put(to, data, bytes);
 }
 
 static void copy_folder(const char *from, const char *to)
@@ -138,7 +129,7 @@ static FlPlan *plan_of(const FlRenderOptions *options)
 static void write_frame(const char *path, FlDigest made_from)
 {
     g_autofree char *mark = fl_mark_text(made_from);
-    put(path, mark, strlen(mark));
+    scratch_put(path, mark, strlen(mark));
     const int fd = open(path, O_RDWR | O_CLOEXEC);
     g_assert_true(fl_mark_seal(fd, mark));
     close(fd);
@@ -228,7 +219,7 @@ static void change(const char *path)
     g_assert_true(g_file_get_contents(path, &data, &bytes, NULL));
     g_autoptr(GString) longer = g_string_new_len(data, (gssize)bytes);
     g_string_append_c(longer, '\n');
-    put(path, longer->str, longer->len);
+    scratch_put(path, longer->str, longer->len);
 }
 
 static const char *const files[] = {
@@ -266,7 +257,7 @@ static void a_change_of_any_file_starts_the_render_anew(void)
         change(path);
         if (is_resumed(&options))
             g_error("resumes although %s has changed", files[k]);
-        put(path, saved, bytes);
+        scratch_put(path, saved, bytes);
         g_assert_true(is_resumed(&options));
         g_unlink(film.state);
         leave(&options, true);
@@ -274,7 +265,7 @@ static void a_change_of_any_file_starts_the_render_anew(void)
         change(path);
         if (is_finished(&options) || is_verified(&options))
             g_error("has nothing to do although %s has changed", files[k]);
-        put(path, saved, bytes);
+        scratch_put(path, saved, bytes);
         g_assert_true(is_finished(&options));
     }
 }
@@ -293,7 +284,7 @@ static void a_change_beside_the_inputs_is_seen(void)
             continue;
         leave(&options, true);
         g_assert_true(is_finished(&options));
-        put(path, "new", 3);
+        scratch_put(path, "new", 3);
         g_assert_false(is_finished(&options));
         g_unlink(path);
     }
@@ -400,7 +391,7 @@ static void assert_file_counts(const FlRenderOptions *options, Digests before, c
     g_assert_true(g_file_get_contents(path, &saved, &bytes, NULL));
     change(path);
     assert_differ(name, before, digests_of(options), paint);
-    put(path, saved, bytes);
+    scratch_put(path, saved, bytes);
 }
 
 static void files_count_for_frames_and_paint(void)

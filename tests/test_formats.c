@@ -5,12 +5,11 @@
 #include "io/png.h"
 #include "io/provenance.h"
 #include "io/sink.h"
+#include "scratch.h"
 
 #include <gio/gio.h>
-#include <glib/gstdio.h>
 #include <math.h>
 #include <signal.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
 #if HAVE_EXR
@@ -23,31 +22,9 @@
 
 enum { W = 34, H = 26, FRAMES = 5 };
 
-typedef struct Scratch {
-    char *folder;
-} Scratch;
-
-static void scratch_clear(Scratch *scratch)
-{
-    g_autoptr(GDir) dir = g_dir_open(scratch->folder, 0, NULL);
-    for (const char *name; (name = g_dir_read_name(dir));) {
-        g_autofree char *path = g_build_filename(scratch->folder, name, NULL);
-        g_remove(path);
-    }
-    g_rmdir(scratch->folder);
-    g_free(scratch->folder);
-}
-
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Scratch, scratch_clear)
-
-static Scratch scratch_new(void)
-{
-    return (Scratch){g_dir_make_tmp("fluidy-formats-XXXXXX", NULL)};
-}
-
 static int count_files(const Scratch *scratch)
 {
-    g_autoptr(GDir) dir = g_dir_open(scratch->folder, 0, NULL);
+    g_autoptr(GDir) dir = g_dir_open(scratch, 0, NULL);
     int n = 0;
     while (g_dir_read_name(dir))
         n++;
@@ -84,14 +61,6 @@ static bool write_film(const char *path, bool opaque, GError **error)
     return sink && fl_sink_finish(sink, error);
 }
 
-/** Writes a file without waiting for the disk. */
-static void put(const char *path, const char *data, gsize bytes)
-{
-    FILE *file = fopen(path, "wb");
-    g_assert_true(file && fwrite(data, 1, bytes, file) == bytes);
-    fclose(file);
-}
-
 /** Every byte of a file that is changed, and every length, is seen by its mark. */
 static void check_mark(const char *path, FlDigest made_from, int step)
 {
@@ -102,12 +71,12 @@ static void check_mark(const char *path, FlDigest made_from, int step)
     g_assert_true(g_file_get_contents(path, &data, &bytes, NULL));
     for (gsize k = 0; k < bytes; k += (gsize)step) {
         data[k] ^= 16;
-        put(path, data, bytes);
+        scratch_put(path, data, bytes);
         data[k] ^= 16;
         const FlMark mark = fl_mark_read(path, &found);
         if (mark == FL_MARK_WHOLE && fl_digest_is_same(found, made_from))
             g_error("%s: byte %zu of %zu was changed unseen", path, k, bytes);
-        put(path, data, k);
+        scratch_put(path, data, k);
         g_assert_false(fl_mark_is(path, made_from));
     }
 }
@@ -169,10 +138,10 @@ static void a_film_reads_back_with_size_rate_alpha_and_tags(void)
     };
     if (lacks("ffmpeg") || lacks("ffprobe"))
         return;
-    g_auto(Scratch) scratch = scratch_new();
+    g_autoptr(Scratch) scratch = scratch_make();
     for (size_t i = 0; i < G_N_ELEMENTS(films); i++) {
         g_autoptr(GError) error = NULL;
-        g_autofree char *path = g_build_filename(scratch.folder, films[i].name, NULL);
+        g_autofree char *path = g_build_filename(scratch, films[i].name, NULL);
         write_film(path, films[i].opaque, &error);
         g_assert_no_error(error);
         g_autofree char *said = probe(path);
@@ -188,7 +157,7 @@ static void a_film_reads_back_with_size_rate_alpha_and_tags(void)
             assert_said(said, "color_transfer=bt709");
             assert_said(said, "color_primaries=bt709");
         }
-        g_assert_cmpint(count_files(&scratch), ==, (int)i + 1);
+        g_assert_cmpint(count_files(scratch), ==, (int)i + 1);
     }
 }
 
@@ -215,12 +184,12 @@ static void a_lossless_film_keeps_every_bit_and_prores_nearly(void)
     } films[] = {{"a.mkv", 0}, {"a.apng", 0}, {"a.mov", 6}};
     if (lacks("ffmpeg"))
         return;
-    g_auto(Scratch) scratch = scratch_new();
+    g_autoptr(Scratch) scratch = scratch_make();
     uint8_t expected[4 * W * H], got[4 * W * H];
     fill(expected, FRAMES - 1);
     for (size_t i = 0; i < G_N_ELEMENTS(films); i++) {
         g_autoptr(GError) error = NULL;
-        g_autofree char *path = g_build_filename(scratch.folder, films[i].name, NULL);
+        g_autofree char *path = g_build_filename(scratch, films[i].name, NULL);
         write_film(path, false, &error);
         g_assert_no_error(error);
         decode_last(path, got);
@@ -234,11 +203,11 @@ static void transparent_frames_are_not_for_h264(void)
     if (lacks("ffmpeg"))
         return;
     g_autoptr(GError) error = NULL;
-    g_auto(Scratch) scratch = scratch_new();
-    g_autofree char *path = g_build_filename(scratch.folder, "a.mp4", NULL);
+    g_autoptr(Scratch) scratch = scratch_make();
+    g_autofree char *path = g_build_filename(scratch, "a.mp4", NULL);
     g_assert_false(write_film(path, false, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
-    g_assert_cmpint(count_files(&scratch), ==, 0);
+    g_assert_cmpint(count_files(scratch), ==, 0);
 }
 
 static void an_unfinished_film_leaves_nothing(void)
@@ -246,8 +215,8 @@ static void an_unfinished_film_leaves_nothing(void)
     if (lacks("ffmpeg"))
         return;
     g_autoptr(GError) error = NULL;
-    g_auto(Scratch) scratch = scratch_new();
-    g_autofree char *path = g_build_filename(scratch.folder, "a.mkv", NULL);
+    g_autoptr(Scratch) scratch = scratch_make();
+    g_autofree char *path = g_build_filename(scratch, "a.mkv", NULL);
     const FlSinkParams params = {.path = path, .width = W, .height = H, .fps = 25};
     FlSink *sink = fl_sink_open(fl_sink_format(NULL, path, NULL), &params, &error);
     g_assert_no_error(error);
@@ -255,15 +224,15 @@ static void an_unfinished_film_leaves_nothing(void)
     fill(rgba, 0);
     g_assert_true(fl_sink_frame(sink, &(FlSinkFrame){.number = 1, .rgba = rgba}, &error));
     fl_sink_free(sink);
-    g_assert_cmpint(count_files(&scratch), ==, 0);
+    g_assert_cmpint(count_files(scratch), ==, 0);
 }
 
 /** Puts a program called ffmpeg first into $PATH; NULL: none at all. Returns the old $PATH. */
 static char *pretend_ffmpeg(const Scratch *scratch, const char *script)
 {
     char *before = g_strdup(g_getenv("PATH"));
-    g_autofree char *program = g_build_filename(scratch->folder, "ffmpeg", NULL);
-    g_autofree char *path = g_strconcat(scratch->folder, ":", script ? before : "", NULL);
+    g_autofree char *program = g_build_filename(scratch, "ffmpeg", NULL);
+    g_autofree char *path = g_strconcat(scratch, ":", script ? before : "", NULL);
     if (script) {
         g_assert_true(g_file_set_contents(program, script, -1, NULL));
         g_chmod(program, 0755);
@@ -275,30 +244,30 @@ static char *pretend_ffmpeg(const Scratch *scratch, const char *script)
 static void the_death_of_ffmpeg_is_told_in_its_own_words(void)
 {
     g_autoptr(GError) error = NULL;
-    g_auto(Scratch) scratch = scratch_new();
-    g_auto(Scratch) bin = scratch_new();
+    g_autoptr(Scratch) scratch = scratch_make();
+    g_autoptr(Scratch) bin = scratch_make();
     g_autofree char *before =
-        pretend_ffmpeg(&bin, "#!/bin/sh\necho first >&2\necho no such encoder >&2\nexit 1\n");
-    g_autofree char *path = g_build_filename(scratch.folder, "a.mkv", NULL);
+        pretend_ffmpeg(bin, "#!/bin/sh\necho first >&2\necho no such encoder >&2\nexit 1\n");
+    g_autofree char *path = g_build_filename(scratch, "a.mkv", NULL);
     g_assert_false(write_film(path, false, &error));
     g_setenv("PATH", before, TRUE);
     g_assert_error(error, FL_ERROR, FL_ERROR_OUTPUT);
     g_assert_true(g_str_has_prefix(error->message, path));
     g_assert_true(g_str_has_suffix(error->message, "ffmpeg stopped: no such encoder"));
-    g_assert_cmpint(count_files(&scratch), ==, 0);
+    g_assert_cmpint(count_files(scratch), ==, 0);
 }
 
 static void a_missing_ffmpeg_is_one_plain_message(void)
 {
     g_autoptr(GError) error = NULL;
-    g_auto(Scratch) scratch = scratch_new();
-    g_autofree char *before = pretend_ffmpeg(&scratch, NULL);
-    g_autofree char *path = g_build_filename(scratch.folder, "a.mov", NULL);
+    g_autoptr(Scratch) scratch = scratch_make();
+    g_autofree char *before = pretend_ffmpeg(scratch, NULL);
+    g_autofree char *path = g_build_filename(scratch, "a.mov", NULL);
     g_assert_false(write_film(path, false, &error));
     g_setenv("PATH", before, TRUE);
     g_assert_error(error, FL_ERROR, FL_ERROR_OUTPUT);
     g_assert_nonnull(strstr(error->message, "not installed"));
-    g_assert_cmpint(count_files(&scratch), ==, 0);
+    g_assert_cmpint(count_files(scratch), ==, 0);
 }
 
 static void an_existing_film_is_kept(void)
@@ -306,8 +275,8 @@ static void an_existing_film_is_kept(void)
     if (lacks("ffmpeg"))
         return;
     g_autoptr(GError) error = NULL;
-    g_auto(Scratch) scratch = scratch_new();
-    g_autofree char *path = g_build_filename(scratch.folder, "a.mov", NULL), *now = NULL;
+    g_autoptr(Scratch) scratch = scratch_make();
+    g_autofree char *path = g_build_filename(scratch, "a.mov", NULL), *now = NULL;
     g_file_set_contents(path, "precious", -1, NULL);
     g_assert_false(write_film(path, false, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_EXISTS);
@@ -355,10 +324,10 @@ static void files_of_all_formats_know_when_they_were_changed(void)
         return;
     for (const FlSinkFormat *const *format = fl_sink_formats(); *format; format++) {
         g_autoptr(GError) error = NULL;
-        g_auto(Scratch) scratch = scratch_new();
+        g_autoptr(Scratch) scratch = scratch_make();
         g_autofree char *name = g_strdup_printf("a%s%s", (*format)->film ? "" : "_%02d",
                                                 (*format)->suffix ? (*format)->suffix : "");
-        g_autofree char *pattern = g_build_filename(scratch.folder, name, NULL);
+        g_autofree char *pattern = g_build_filename(scratch, name, NULL);
         g_autofree char *path = fl_output_name(pattern, 3, NULL, NULL);
         if (!has_mark(*format))
             continue;
@@ -378,10 +347,10 @@ static void a_full_disk_is_an_error_and_leaves_no_litter(void)
     getrlimit(RLIMIT_FSIZE, &before);
     for (const FlSinkFormat *const *format = fl_sink_formats(); *format; format++) {
         g_autoptr(GError) error = NULL;
-        g_auto(Scratch) scratch = scratch_new();
+        g_autoptr(Scratch) scratch = scratch_make();
         g_autofree char *name = g_strdup_printf("a%s%s", (*format)->film ? "" : "_%02d",
                                                 (*format)->suffix ? (*format)->suffix : "");
-        g_autofree char *path = g_build_filename(scratch.folder, name, NULL);
+        g_autofree char *path = g_build_filename(scratch, name, NULL);
         if (strcmp((*format)->name, "null") == 0)
             continue;
         g_test_message("%s", (*format)->name);
@@ -392,16 +361,16 @@ static void a_full_disk_is_an_error_and_leaves_no_litter(void)
         setrlimit(RLIMIT_FSIZE, &before);
         g_assert_false(written);
         g_assert_error(error, FL_ERROR, FL_ERROR_OUTPUT);
-        g_assert_true(g_str_has_prefix(error->message, scratch.folder));
-        g_assert_cmpint(count_files(&scratch), ==, 0);
+        g_assert_true(g_str_has_prefix(error->message, scratch));
+        g_assert_cmpint(count_files(scratch), ==, 0);
     }
 }
 
 static void sums_are_a_line_per_frame(void)
 {
     g_autoptr(GError) error = NULL;
-    g_auto(Scratch) scratch = scratch_new();
-    g_autofree char *path = g_build_filename(scratch.folder, "a.sha256", NULL), *text = NULL;
+    g_autoptr(Scratch) scratch = scratch_make();
+    g_autofree char *path = g_build_filename(scratch, "a.sha256", NULL), *text = NULL;
     write_film(path, false, &error);
     g_assert_no_error(error);
     g_assert_true(g_file_get_contents(path, &text, NULL, NULL));
@@ -421,7 +390,7 @@ static uint8_t small[4 * 4 * 4], whole[4 * W * H];
 static char *write_layered(const Scratch *scratch, const char *name)
 {
     g_autoptr(GError) error = NULL;
-    g_autofree char *pattern = g_build_filename(scratch->folder, name, NULL);
+    g_autofree char *pattern = g_build_filename(scratch, name, NULL);
     const FlSinkParams params = {.path = pattern, .width = W, .height = H};
     g_autoptr(FlSink) sink = fl_sink_open(fl_sink_format(NULL, pattern, &error), &params, &error);
     g_assert_no_error(error);
@@ -533,8 +502,8 @@ static void expect_mattes(void)
 
 static void an_exr_holds_linear_premultiplied_layers(void)
 {
-    g_auto(Scratch) scratch = scratch_new();
-    g_autofree char *path = write_layered(&scratch, "a_%02d.exr");
+    g_autoptr(Scratch) scratch = scratch_make();
+    g_autofree char *path = write_layered(scratch, "a_%02d.exr");
     exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
     exr_context_t context;
     int32_t rows;
@@ -574,9 +543,9 @@ static char *read_part(zip_t *zip, const char *name, size_t *bytes)
 
 static void an_openraster_file_has_its_layers_in_order(void)
 {
-    g_auto(Scratch) scratch = scratch_new();
-    g_autofree char *path = write_layered(&scratch, "a_%02d.ora");
-    g_autofree char *again = write_layered(&scratch, "b_%02d.ora");
+    g_autoptr(Scratch) scratch = scratch_make();
+    g_autofree char *path = write_layered(scratch, "a_%02d.ora");
+    g_autofree char *again = write_layered(scratch, "b_%02d.ora");
     g_autofree char *file = NULL, *file_again = NULL;
     size_t length = 0, length_again = 0, bytes = 0;
     g_file_get_contents(path, &file, &length, NULL);
@@ -589,7 +558,7 @@ static void an_openraster_file_has_its_layers_in_order(void)
     g_assert_true(strstr(xml, "name=\"" HAIR "\"") < strstr(xml, "name=\"back-ground\""));
     g_assert_nonnull(strstr(xml, "src=\"data/layer001.png\" x=\"5\" y=\"20\""));
     g_autofree char *png = read_part(zip, "data/layer001.png", &bytes);
-    g_autofree char *out = g_build_filename(scratch.folder, "layer.png", NULL);
+    g_autofree char *out = g_build_filename(scratch, "layer.png", NULL);
     g_file_set_contents(out, png, (gssize)bytes, NULL);
     g_autoptr(FlPicture) layer = fl_picture_read_png(out, NULL);
     g_assert_cmpmem(layer->rgba, 64, small, 64);
@@ -617,8 +586,8 @@ static GBytes *layer_of_frame(FlSink *sink, int number, int since)
 
 static void a_layer_that_stays_is_encoded_once(void)
 {
-    g_auto(Scratch) scratch = scratch_new();
-    g_autofree char *pattern = g_build_filename(scratch.folder, "a_%02d.ora", NULL);
+    g_autoptr(Scratch) scratch = scratch_make();
+    g_autofree char *pattern = g_build_filename(scratch, "a_%02d.ora", NULL);
     const FlSinkParams params = {.path = pattern, .width = W, .height = H};
     g_autoptr(FlSink) sink = fl_sink_open(fl_sink_format(NULL, pattern, NULL), &params, NULL);
     fill(whole, 1);
