@@ -50,7 +50,8 @@ static inline char *scratch_svg(const char *folder, const char *name, const char
     return scratch_write(folder, name, text);
 }
 
-/** Writes a file without waiting for the disk. */
+/** Writes a file without waiting for the disk. GLib 2.74 would not cut off a longer file that is
+ * there already (G_FILE_SET_CONTENTS_NONE). */
 static inline void scratch_put(const char *path, const char *data, gsize bytes)
 {
     FILE *file = fopen(path, "wb");
