@@ -150,6 +150,7 @@ result $? 'what is wrong in many places is one warning, and the summary recalls 
     [ "$(ls fluidy)" = "$(printf 'w_preview_%s\n' 0002.png 0003.png)" ] && rm -r fluidy
 result $? '--preview paints a frame and those beside it, again and again'
 "$program" whole --styles 01,03 >out 2>err && [ "$(ls fluidy)" = w_styles.png ] && rm -r fluidy &&
+    grep -q 'style 01 Watercolour' err &&
     "$program" whole --styles 01,03 -o sheet.png -f 2 -q >out 2>err && [ -s sheet.png ] && [ ! -s err ]
 result $? '--styles is a sheet'
 "$program" whole -s 01 --methods fluidymation,lazyfluids,lazyfluids:w-uni=0,transport -W 64 >out 2>err &&

@@ -206,7 +206,9 @@ static bool show_frame(void *taker, const FlSinkFrame *frame, int width, int hei
 /* Paints all frames of a row. */
 static bool paint(Comparison *c, const Variant *variant, int row, GError **error)
 {
-    fl_note(&c->caller, "%s %s", c->kind->noun, variant->name);
+    g_auto(GStrv) parts = g_strsplit(variant->name, ":", 2); // the name, and what stands below it
+    g_autofree char *said = g_strjoinv(" ", parts);
+    fl_note(&c->caller, "%s %s", c->kind->noun, said);
     const size_t n = c->options.n_settings;
     const size_t own = (size_t)variant->n;
     g_autofree FlSetting *settings = g_new0(FlSetting, n + own);
@@ -220,7 +222,6 @@ static bool paint(Comparison *c, const Variant *variant, int row, GError **error
     c->row = row, c->frame = 0;
     if (!fl_render_frames(&options, show_frame, c, error))
         return false;
-    g_auto(GStrv) parts = g_strsplit(variant->name, ":", 2); // of a method and its settings
     const char *lines = parts[1] ? g_strdelimit(parts[1], ":", '\n') : "";
     fl_contact_sheet_name_row(&c->contact, row, parts[0], lines);
     return true;
@@ -281,16 +282,31 @@ static bool compare(const Kind *kind, const FlRenderOptions *given, const Varian
 
 /* ---- styles ---------------------------------------------------------------------------------- */
 
+/* Returns a row's name for the style in folder `path`: the word that selects it and, on a line of
+ * its own, its title. */
+static char *style_row_name(const char *style, const char *path, const GPtrArray *entries)
+{
+    g_autofree char *word = g_path_get_basename(style);
+    for (guint k = 0; k < entries->len; k++) {
+        const FlStyleEntry *entry = entries->pdata[k];
+        if (strcmp(entry->path, path) == 0 && entry->title &&
+            g_ascii_strcasecmp(entry->title, word) != 0)
+            return g_strdup_printf("%s:%s", word, entry->title);
+    }
+    return g_steal_pointer(&word);
+}
+
 bool fl_compare_styles(const FlRenderOptions *options, const char *const *styles, GError **error)
 {
     const int n = (int)g_strv_length((char **)styles);
     g_autofree Variant *variants = g_new0(Variant, n + 1);
     g_autoptr(GPtrArray) names = g_ptr_array_new_with_free_func(g_free);
+    g_autoptr(GPtrArray) entries = fl_style_list();
     for (int k = 0; k < n; k++) { // find a mistyped one before painting the others
         g_autofree char *path = fl_style_find(styles[k], error);
         if (!path)
             return false;
-        g_ptr_array_add(names, g_path_get_basename(styles[k]));
+        g_ptr_array_add(names, style_row_name(styles[k], path, entries));
         variants[k] = (Variant){names->pdata[k], "", 1, {{.name = "style", .value = styles[k]}}};
     }
     return compare(&styles_kind, options, variants, n, error);
