@@ -113,8 +113,10 @@ static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
                           cache->makes, cache->caller, &factor, error);
     const FlStyleUse use = {params->style_start, params->style_frames, params->style_step, factor,
                             settings->reverse};
-    g_autoptr(FlStyle) style = whole ? fl_style_adapt(whole, &use, error) : NULL;
-    if (!style)
+    const FlStop stop = {cache->caller.stopped, cache->caller.data};
+    g_autoptr(FlStyle) style =
+        whole && !fl_stop_asked(&stop, error) ? fl_style_adapt(whole, &use, error) : NULL;
+    if (!style || fl_stop_asked(&stop, error))
         return NULL;
     g_clear_pointer(&whole, fl_style_free); // it is large
     g_autoptr(FlStyleInstance) instance = g_new0(FlStyleInstance, 1);

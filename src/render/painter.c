@@ -12,11 +12,11 @@
 
 /* The part of the page that is painted of a region with this extent in all frames: with a margin of
  * the coarsest patches, on the grid of the coarsest level, so that it has the page's pyramid. */
-static FlRect crop(FlRect extent, FlRect page, const FlStyleInstance *style)
+static FlRect crop(FlRect extent, FlRect page, const FlRegionPlan *region)
 {
-    const int scale = fl_field_px(style->exemplar);
-    const FlRect grown = fl_rect_grown(extent, scale * fl_guided_patches(style, page), page);
-    return fl_rect_on_grid(grown, scale * fl_guided_grid(style, page));
+    const int scale = fl_field_px(region->style->exemplar);
+    const FlRect grown = fl_rect_grown(extent, scale * fl_guided_patches(region, page), page);
+    return fl_rect_on_grid(grown, scale * fl_guided_grid(region, page));
 }
 
 static FlRect cropped(const FlPainter *painter)
@@ -24,7 +24,7 @@ static FlRect cropped(const FlPainter *painter)
     const FlRect extent = fl_mask_store_extent(painter->shapes->masks, painter->plan->region);
     const FlRect page = fl_painter_page(painter);
     return crop(fl_rect_grown(extent, (int)ceilf(painter->result.reach_px), page), page,
-                painter->plan->style);
+                painter->plan);
 }
 
 /* Measured: the packed state, and what packing leaves of a picture; bare paper takes little. */
@@ -59,7 +59,8 @@ static void forget(FlPainter *painter)
 void fl_painter_clear(FlPainter *painter)
 {
     forget(painter);
-    fl_guide_sequence_free(painter->sequence);
+    for (int k = 0; k < FL_KEPT_GUIDES; k++)
+        fl_guide_sequence_free(painter->kept[k].sequence);
     *painter = (FlPainter){0};
 }
 
@@ -72,11 +73,11 @@ void fl_painter_follow(FlPainter *painter, const FlRegionPlan *region)
 void fl_painter_init(FlPainter *painter, const FlShapes *shapes, const FlRegionPlan *region,
                      FlReuse reuse)
 {
+    FlKeptGuides kept[FL_KEPT_GUIDES];
     forget(painter);
+    memcpy(kept, painter->kept, sizeof kept);
     *painter = (FlPainter){.plan = &painter->own,
                            .own = *region,
-                           .sequence = painter->sequence,
-                           .sequence_of = painter->sequence_of,
                            .shapes = shapes,
                            .picture = NONE,
                            .reuse = reuse,
@@ -88,6 +89,7 @@ void fl_painter_init(FlPainter *painter, const FlShapes *shapes, const FlRegionP
                                       .more = region->more,
                                       .width = shapes->width,
                                       .height = shapes->height}};
+    memcpy(painter->kept, kept, sizeof kept);
     if (region->engine->exposure)
         painter->result.exposure = region->engine->exposure(region->style);
     if (region->engine->reach)
@@ -123,7 +125,7 @@ static bool open_engine(FlPainter *painter, GError **error)
     return painter->paint != NULL;
 }
 
-/* Makes the guides for the whole film, unless the painter has made them before. */
+/* Makes the guides for the whole film, unless the painter has kept them; kept[0] are the last. */
 static bool make_sequence(FlPainter *painter, GError **error)
 {
     const FlGuideSource source = fl_painter_guide_source(painter);
@@ -152,14 +154,22 @@ static bool make_sequence(FlPainter *painter, GError **error)
         fl_digest_add_text(&made_of, painter->plan->styles->text);
         fl_digest_add(&made_of, &painter->plan->style_key, sizeof painter->plan->style_key);
     }
-    if (painter->sequence && fl_digest_is_same(made_of, painter->sequence_of))
-        return true;
-    fl_guide_sequence_free(painter->sequence);
-    painter->sequence = fl_painter_open_fluid(painter, error)
-                            ? fl_guide_sequence_new(&source, &params, error)
-                            : NULL;
-    fl_painter_close_fluid(painter);
-    painter->sequence_of = made_of;
+    FlKeptGuides *kept = painter->kept;
+    int k = 0;
+    while (k < FL_KEPT_GUIDES - 1 && !fl_digest_is_same(made_of, kept[k].made_of))
+        k++;
+    FlKeptGuides guides = kept[k];
+    memmove(kept + 1, kept, (size_t)k * sizeof *kept);
+    if (!guides.sequence || !fl_digest_is_same(made_of, guides.made_of)) {
+        fl_guide_sequence_free(guides.sequence);
+        guides.made_of = made_of;
+        guides.sequence = fl_painter_open_fluid(painter, error)
+                              ? fl_guide_sequence_new(&source, &params, error)
+                              : NULL;
+        fl_painter_close_fluid(painter);
+    }
+    kept[0] = guides;
+    painter->sequence = guides.sequence;
     return painter->sequence != NULL;
 }
 

@@ -9,6 +9,14 @@
 #include "render/motion_source.h"
 #include "render/reuse.h"
 
+enum { FL_KEPT_GUIDES = 6 }; // a page that shows every style goes through as many kinds
+
+/** The guides of a region for a whole film, made from all that has this digest. */
+typedef struct FlKeptGuides {
+    FlGuideSequence *sequence; // NULL: none
+    FlDigest made_of;
+} FlKeptGuides;
+
 /** Paints one region, frame by frame. */
 typedef struct FlPainter {
     const FlRegionPlan *plan; // `own`; NULL: the painter is new
@@ -26,11 +34,11 @@ typedef struct FlPainter {
     int asked, answer; // a picture, and the one around which its depth is measured
     double cost_s;  // of the last picture that was synthesised, by one thread; 0 before the first
     FlFluid *fluid; // while guides are made; NULL: the region has none
-    FlGuideSequence *sequence;
-    FlDigest sequence_of; // digest of all inputs of the sequence
-    FlGuides guides;      // of the picture, for the engine; empty: it was not painted
-    FlGuides shown;       // of the picture, for inspection: the whole region in px of the picture
-    void *paint;          // the state of plan->engine; NULL: all pictures are known
+    FlGuideSequence *sequence; // kept[0]
+    FlKeptGuides kept[FL_KEPT_GUIDES];
+    FlGuides guides; // of the picture, for the engine; empty: it was not painted
+    FlGuides shown;  // of the picture, for inspection: the whole region in px of the picture
+    void *paint;     // the state of plan->engine; NULL: all pictures are known
     FlReuse reuse;
     bool wants_view;   // result.view is filled, which takes the memory of a frame
     bool wants_guides; // fl_painter_guides() has those of every picture
@@ -99,10 +107,10 @@ bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], 
 /* ---- the guides of its pictures: their sources, and the part of them that is needed --------- */
 
 /** The grid of the coarsest level, px of the guides. */
-int fl_guided_grid(const FlStyleInstance *style, FlRect page);
+int fl_guided_grid(const FlRegionPlan *region, FlRect page);
 
 /** The reach of the coarsest level's patches plus the level's grid, px of the guides. */
-int fl_guided_patches(const FlStyleInstance *style, FlRect page);
+int fl_guided_patches(const FlRegionPlan *region, FlRect page);
 
 /** The page that a painter's rectangle lies on. */
 FlRect fl_painter_page(const FlPainter *painter);

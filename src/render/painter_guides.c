@@ -8,6 +8,10 @@
 #include <math.h>
 #include <string.h>
 
+/* Levels that drafts have room for, as recordings of most styles have: with another style, a region
+ * keeps its rectangle and its guides. */
+enum { DRAFT_LEVELS = 4 };
+
 /* ---- sources of guides --------------------------------------------------------------------- */
 
 /* The frame of the film that has a picture of the guides. */
@@ -216,15 +220,17 @@ FlGuideSource fl_painter_guide_source(FlPainter *painter)
                            .keeps_flow = painter->plan->keeps_flow};
 }
 
-int fl_guided_grid(const FlStyleInstance *style, FlRect page)
+int fl_guided_grid(const FlRegionPlan *region, FlRect page)
 {
-    const FlRect guided = guided_part(style, page);
-    return 1 << (MIN(style->exemplar->n_levels, fl_levels_of(guided.width, guided.height)) - 1);
+    const FlRect guided = guided_part(region->style, page);
+    const int least = region->settings.detail == FL_DETAIL_DRAFT ? DRAFT_LEVELS : 1;
+    const int levels = MAX(region->style->exemplar->n_levels, least);
+    return 1 << (MIN(levels, fl_levels_of(guided.width, guided.height)) - 1);
 }
 
-int fl_guided_patches(const FlStyleInstance *style, FlRect page)
+int fl_guided_patches(const FlRegionPlan *region, FlRect page)
 {
-    return (FL_PATCH_RADIUS + 1) * fl_guided_grid(style, page);
+    return (FL_PATCH_RADIUS + 1) * fl_guided_grid(region, page);
 }
 
 /* ---- depth --------------------------------------------------------------------------------- */
@@ -500,10 +506,10 @@ static bool find_resting(const FlPainter *painter, FlRestingParts *resting, FlRe
 /* The part of the frame for which guides are needed, including all pixels on which these depend. */
 static FlRect needed_part(const FlPainter *painter, FlRect moving)
 {
-    const FlStyleInstance *style = painter->plan->style;
     const FlRect rect = fl_painter_guided(painter), whole = {0, 0, rect.width, rect.height};
-    const int patches = fl_guided_patches(style, fl_painter_page(painter));
-    return fl_rect_grown(moving, MAX(patches, fl_rim_reach(style->exemplar->border_px)), whole);
+    const int patches = fl_guided_patches(painter->plan, fl_painter_page(painter));
+    const int rim = fl_rim_reach(painter->plan->style->exemplar->border_px);
+    return fl_rect_grown(moving, MAX(patches, rim), whole);
 }
 
 /* The depth takes as much scratch as the other planes, which are made later. */

@@ -183,6 +183,19 @@ static void set_not_found(const GPtrArray *entries, const char *name, GError **e
     g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "no style “%s” in %s%s", name, where, others);
 }
 
+/* The first style whose folder has the name, which is found without the others' titles; NULL: none
+ * has. */
+static char *named_folder(const char *name)
+{
+    g_auto(GStrv) folders = fl_style_folders();
+    for (char **folder = folders; *folder; folder++) {
+        g_autofree char *path = g_build_filename(*folder, name, NULL);
+        if (*name && fl_is_style(path))
+            return g_steal_pointer(&path);
+    }
+    return NULL;
+}
+
 char *fl_style_find(const char *name, GError **error)
 {
     if (strchr(name, G_DIR_SEPARATOR) || fl_is_style(name)) {
@@ -191,10 +204,10 @@ char *fl_style_find(const char *name, GError **error)
         g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s: no such folder: expected a style", name);
         return NULL;
     }
+    char *path = named_folder(name);
+    if (path)
+        return path;
     g_autoptr(GPtrArray) entries = fl_style_list();
-    for (guint i = 0; i < entries->len; i++)
-        if (strcmp(((FlStyleEntry *)entries->pdata[i])->name, name) == 0)
-            return g_strdup(((FlStyleEntry *)entries->pdata[i])->path);
     for (guint i = 0; i < entries->len; i++)
         if (is_meant(entries->pdata[i], name))
             return g_strdup(((FlStyleEntry *)entries->pdata[i])->path);
