@@ -62,6 +62,10 @@ stop puff_resumed INT 3 "${fluid[@]}"
 paint puff_resumed "${fluid[@]}" && grep -q 'resuming an earlier run' err && same puff_resumed puff_whole &&
     ! same puff_resumed puff_plain
 result $? 'a fluid flows on where a render is resumed'
+paint puff_dumped "${fluid[@]}" --dump puff_flow && paint puff_late "${fluid[@]}" -f 4- --dump puff_late_flow &&
+    cmp "$(find puff_late_flow -name motion_0005.flo)" "$(find puff_flow -name motion_0005.flo)" &&
+    cmp "$(find puff_late_flow -name motion_0006.flo)" "$(find puff_flow -name motion_0006.flo)"
+result $? 'in frames that start late it flows as in the whole film'
 unset film
 
 for i in 1 2 3 4 5 6; do

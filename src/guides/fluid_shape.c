@@ -3,8 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#define CELLS 100   // along the larger side of the region's part of the page
-#define FINEST 160  // along the larger side of the page, at most
+#define CELLS 80    // along the larger side of the page, at least, and up to twice as many
 #define FINEST_PX 2 // of a cell
 #define MARGIN 4    // cells around the part
 #define FAR 40      // the largest distance
@@ -14,13 +13,16 @@
 #define LEAP .05f       // of the page's larger side
 #define NONE (-1)
 
-/* With a margin and a border. A side at the page's edge has no margin, so that faces on the edge
- * are open. */
+/* Cells have a power of two px, so that they lie alike for other parts of the page, which painters
+ * lay on a grid of such px. With a margin and a border. A side at the page's edge has no margin, so
+ * that faces on the edge are open. */
 void fl_fluid_lay_grid(FlFluid *f, FlRect part, FlRect page)
 {
-    const int page_side = MAX(page.width, page.height), side = MAX(part.width, part.height);
-    const int wanted = MAX((side + CELLS - 1) / CELLS, (page_side + FINEST - 1) / FINEST);
-    const int px = f->px = MAX(wanted, FINEST_PX);
+    const int page_side = MAX(page.width, page.height);
+    int px = FINEST_PX;
+    while (2 * px * CELLS <= page_side)
+        px *= 2;
+    f->px = px;
     const int part_at[2] = {part.x, part.y}, size[2] = {part.width, part.height};
     const int page_at[2] = {page.x, page.y}, page_size[2] = {page.width, page.height};
     int before[2], cells[2];

@@ -42,6 +42,13 @@ static void add_drawings(FlFacts *facts, const FlPlan *plan)
         fl_facts_add_number(facts, "fps", plan->out.fps);
 }
 
+/* The files of the frames before the first one, which wet the paper and move fluids. */
+static void add_earlier(FlFacts *facts, const FlPlan *plan)
+{
+    for (int k = fl_plan_earliest(plan); k < fl_drawing_earlier(plan->shapes.drawing); k++)
+        add_file(facts, plan->inputs, fl_drawing_found_files(plan->shapes.drawing)[k]);
+}
+
 /* The files of an option that may name one for each frame; what is missing is told when it is
  * opened. */
 static void add_pattern(FlFacts *facts, const FlShapes *shapes, FlInputs *inputs,
@@ -157,8 +164,7 @@ FlFacts *fl_plan_facts(const FlPlan *plan)
     add_options(facts, plan);
     add_drawings(facts, plan);
     add_regions(facts, plan); // last of the drawing, so that a changed file is named as the cause
-    for (int k = fl_plan_earliest(plan); k < fl_drawing_earlier(plan->shapes.drawing); k++)
-        add_file(facts, plan->inputs, fl_drawing_found_files(plan->shapes.drawing)[k]);
+    add_earlier(facts, plan);
     if (paper && g_file_test(paper, G_FILE_TEST_IS_REGULAR))
         add_file(facts, plan->inputs, paper);
     if (plan->options.directions)
@@ -221,6 +227,11 @@ FlFacts *fl_plan_facts_of_paint(const FlPlan *plan)
 {
     FlFacts *facts = fl_facts_new();
     const FlShapes *shapes = &plan->shapes;
+    bool flows = false;
+    for (int p = 0; p < shapes->n_painted; p++)
+        flows = flows || shapes->painted[p].settings.fluid > FL_FLUID_NONE;
+    if (flows)
+        add_earlier(facts, plan);
     add_drawings(facts, plan);
     add_numbers(facts, shapes->drawing); // by which layers of one file differ
     add_values(facts, FL_SCOPE_RENDER, &plan->options, NULL, false);

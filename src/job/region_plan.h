@@ -49,6 +49,12 @@ static inline bool fl_region_lives(const FlRegionPlan *region, const FlDrawing *
     return lives;
 }
 
+/** True if both are of one region in one style, in two films of the same drawing. */
+static inline bool fl_region_is_same(const FlRegionPlan *a, const FlRegionPlan *b)
+{
+    return g_str_equal(a->name, b->name) && a->style_key == b->style_key;
+}
+
 /** The shapes of a film, and how each region is painted; or masks alone, which the library's caller
  * gives: they have no drawing, no motion of their own and no list of regions. */
 typedef struct FlShapes {
@@ -59,9 +65,11 @@ typedef struct FlShapes {
     bool loop; // the end leads into the beginning
     int hold;  // the drawing changes on every hold-th frame
     FlDrawing *drawing;
-    FlSurround *surround;     // NULL: the picture has no other shapes
-    const FlMaskStore *masks; // of the surround
-    bool rasterised;          // the masks are there
+    FlSurround *surround;           // NULL: the picture has no other shapes
+    const FlMaskStore *masks;       // of the surround
+    bool rasterised;                // the masks are there
+    const struct FlShapes *earlier; // of the frames before the first; borrowed, NULL: none
+    int n_earlier;                  // of them: the one that is the first here
     int n_painted;
     FlRegionPlan *painted;
     int *painted_of;     // by region: index into painted, FL_DRAWN_AS_IT_IS or FL_LEFT_OUT

@@ -260,22 +260,50 @@ static bool open_wet(FlFrames *frames, GError **error)
     return frames->wet;
 }
 
-/* The paper of a film that starts late, whose first frame is composed without marks. Frames that
- * were not asked for are no reason to fail: it is clean without them. */
+static bool starts_late(const FlPlan *plan)
+{
+    return !plan->options.loop && fl_drawing_earlier(plan->shapes.drawing) > 0 &&
+           plan->options.registration != FL_REGISTRATION_ON; // each frame has its own place
+}
+
+/* Reads the frames before the first one, which were not asked for: if they cannot be read, the film
+ * begins with clean paper and fluids at rest. */
+static void read_earlier(FlFrames *frames)
+{
+    FlShapes *shapes = &frames->plan->shapes;
+    g_autoptr(GError) reason = NULL;
+    if (frames->earlier)
+        return;
+    g_autoptr(FlPlan) plan = fl_plan_earlier(frames->plan, &shapes->n_earlier, &reason);
+    if (!plan || !fl_shapes_rasterise(&plan->shapes, &plan->caller, &reason)) {
+        fl_note(&frames->plan->caller, "the first frame knows none before it: %s", reason->message);
+        return;
+    }
+    shapes->earlier = &plan->shapes;
+    frames->earlier = g_steal_pointer(&plan);
+}
+
+static void drop_earlier(FlFrames *frames)
+{
+    frames->plan->shapes.earlier = frames->painters.shapes.earlier = NULL;
+    g_clear_pointer(&frames->earlier, fl_plan_free);
+}
+
+/* The paper of a film that starts late, whose first frame is composed without marks. */
 static bool know_earlier(FlFrames *frames, GError **error)
 {
-    int first;
-    g_autoptr(GError) reason = NULL;
-    g_autoptr(FlPlan) plan = fl_plan_earlier(frames->plan, &first, &reason);
-    if (!plan || !fl_shapes_rasterise(&plan->shapes, &plan->caller, &reason)) {
-        fl_note(&frames->plan->caller, "the first frame has clean paper: %s", reason->message);
+    read_earlier(frames);
+    const FlShapes *shapes = frames->plan->shapes.earlier;
+    const int first = frames->plan->shapes.n_earlier;
+    if (!shapes)
         return true;
-    }
     g_autoptr(FlMotionSource) motion =
-        fl_motion_source_new(plan->shapes.drawing, plan->shapes.masks, true, error);
-    g_autoptr(FlWet) wet = motion ? new_wet(frames, &plan->shapes, NULL, motion, error) : NULL;
-    return wet && fl_wet_learn(wet, first, frames->wet, error) && fl_wet_frame(wet, first, error) &&
-           fl_wet_follow(frames->wet, wet, error);
+        fl_motion_source_new(shapes->drawing, shapes->masks, true, error);
+    g_autoptr(FlWet) wet = motion ? new_wet(frames, shapes, NULL, motion, error) : NULL;
+    const bool known = wet && fl_wet_learn(wet, first, frames->wet, error) &&
+                       fl_wet_frame(wet, first, error) && fl_wet_follow(frames->wet, wet, error);
+    drop_earlier(frames);
+    return known;
 }
 
 /* A missing frame that is held repeats the one before. Shapes are drawn beside the painting, those
@@ -330,8 +358,7 @@ static bool know_before(FlFrames *frames, int frame, double *paint_s, GError **e
     const bool loops = plan->options.loop;
     g_auto(FlComposite) plain = {0};
     if (!frames->wet || fl_wet_begun(frames->wet) || frames->small ||
-        (!loops && (frame > 0 || fl_drawing_earlier(plan->shapes.drawing) == 0 ||
-                    plan->options.registration == FL_REGISTRATION_ON))) // each has its own place
+        (!loops && (frame > 0 || !starts_late(plan))))
         return true;
     return compose(frames, frame, -1, false, &plain, paint_s, error) &&
            (loops ? fl_wet_learn(frames->wet, fl_drawing_shown(plan->shapes.drawing, frame),
@@ -463,13 +490,17 @@ bool fl_frames_prepare(FlFrames *frames, GError **error)
     if (frames->old_plan)
         drop_styles(plan);
     g_clear_pointer(&frames->old_plan, fl_plan_free);
-    return (plan->shapes.rasterised ||
-            !(wet || frames->contacts || fl_painters_need_masks(painters)) ||
-            fl_shapes_rasterise(&plan->shapes, &plan->caller, error)) &&
-           fl_frames_tell(frames, "guides", 0, 0, error) &&
-           fl_painters_init(painters, &plan->shapes, fl_style_cache_bytes(plan->styles),
-                            plan->out.stats || plan->out.report, error) &&
-           (!wet || open_wet(frames, error));
+    if (starts_late(plan) && fl_painters_flow(painters))
+        read_earlier(frames);
+    const bool ready = (plan->shapes.rasterised ||
+                        !(wet || frames->contacts || fl_painters_need_masks(painters)) ||
+                        fl_shapes_rasterise(&plan->shapes, &plan->caller, error)) &&
+                       fl_frames_tell(frames, "guides", 0, 0, error) &&
+                       fl_painters_init(painters, &plan->shapes, fl_style_cache_bytes(plan->styles),
+                                        plan->out.stats || plan->out.report, error);
+    if (!wet)
+        drop_earlier(frames);
+    return ready && (!wet || open_wet(frames, error));
 }
 
 bool fl_frames_seek(FlFrames *frames, int frame, GError **error)
@@ -529,6 +560,7 @@ bool fl_frames_follow(FlFrames *frames, const FlRenderOptions *options, size_t m
     (void)fl_task_wait(&frames->drawing, NULL);
     g_clear_pointer(&frames->draws, g_bytes_unref);
     frames->old_plan = frames->plan, frames->plan = plan;
+    drop_earlier(frames);
     frames->drawn = frames->shown = -1;
     // masks that were taken over are rasterised
     if (!plan->shapes.rasterised ||
@@ -548,6 +580,7 @@ void fl_frames_clear(FlFrames *frames)
     fl_paper_sheet_free(frames->sheet);
     fl_picture_free(frames->directions);
     fl_plan_free(frames->old_plan);
+    fl_plan_free(frames->earlier);
     fl_plan_free(frames->plan);
     *frames = (FlFrames){0};
 }

@@ -16,6 +16,7 @@ typedef struct FlFrames {
     FlPicture *directions; // an image of the hand's directions; NULL: none
     FlDigest sheet_of;     // digest of all inputs of the sheet
     FlPlan *old_plan;      // until the painters follow the plan; NULL: they do
+    FlPlan *earlier;       // of the frames before the first, until they are used; NULL: not made
     FlPainters painters;
     FlWet *wet;                // the wet paper, which paint stains; NULL: paint leaves no stains
     FlMotionSource *motion;    // motion source of `wet`, if the painters have no motion source

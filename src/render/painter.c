@@ -21,7 +21,11 @@ static FlRect crop(FlRect extent, FlRect page, const FlRegionPlan *region)
 
 static FlRect cropped(const FlPainter *painter)
 {
-    const FlRect extent = fl_mask_store_extent(painter->shapes->masks, painter->plan->region);
+    const FlShapes *shapes = painter->shapes;
+    const FlRegionPlan *earlier = fl_painter_earlier(painter);
+    FlRect extent = fl_mask_store_extent(shapes->masks, painter->plan->region);
+    if (earlier)
+        extent = fl_rect_or(extent, fl_mask_store_extent(shapes->earlier->masks, earlier->region));
     const FlRect page = fl_painter_page(painter);
     return crop(fl_rect_grown(extent, (int)ceilf(painter->result.reach_px), page), page,
                 painter->plan);

@@ -124,7 +124,11 @@ FlRect fl_painter_guided(const FlPainter *painter);
  */
 FlGuideSource fl_painter_guide_source(FlPainter *painter);
 
-/** Opens the region's fluid, which moves while guides are made; regions without one need none. */
+/** The plan of the region in the frames before the first one, if these move its fluid; or NULL. */
+const FlRegionPlan *fl_painter_earlier(const FlPainter *painter);
+
+/** Opens the region's fluid, which moves while guides are made; regions without one need none. The
+ * frames before the first one have moved it. */
 bool fl_painter_open_fluid(FlPainter *painter, GError **error);
 void fl_painter_close_fluid(FlPainter *painter);
 

@@ -43,16 +43,21 @@ FlRect fl_painter_page(const FlPainter *painter)
     return (FlRect){0, 0, painter->result.width, painter->result.height};
 }
 
-static bool film_mask(const FlPainter *painter, int shown, uint8_t *coverage, GError **error)
+/* The mask of a frame of a film that has the region as `plan`, in the painter's rectangle. */
+static bool mask_in(const FlPainter *painter, const FlShapes *film, const FlRegionPlan *plan,
+                    int shown, uint8_t *coverage, GError **error)
 {
-    const FlRect rect = painter->result.rect;
-    const int region = painter->plan->region;
-    if (!fl_region_lives(painter->plan, painter->shapes->drawing, shown)) {
+    if (!fl_region_lives(plan, film->drawing, shown)) {
         memset(coverage, 0, fl_rect_pixels(fl_painter_guided(painter)));
         return true;
     }
     return (halves(painter) ? fl_mask_store_get_half : fl_mask_store_get)(
-        painter->shapes->masks, region, shown, rect, coverage, error);
+        film->masks, plan->region, shown, painter->result.rect, coverage, error);
+}
+
+static bool film_mask(const FlPainter *painter, int shown, uint8_t *coverage, GError **error)
+{
+    return mask_in(painter, painter->shapes, painter->plan, shown, coverage, error);
 }
 
 static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **error)
@@ -114,19 +119,25 @@ static FlRegionStep step_into(const FlPainter *painter, int frame, const FlOutli
                           painter->result.rect, *outlines};
 }
 
-/* The outline of a frame of the film, of which the two of a step may be known; to be unref'd. */
-static FlOutline *outline_of(FlPainter *painter, int frame, FlOutline *known, FlOutline *before,
-                             GError **error)
+/* The outline of a frame, that of the frame before where both are alike; to be unref'd. */
+static FlOutline *outline_in(const FlPainter *painter, const FlShapes *film,
+                             const FlRegionPlan *plan, int frame, FlOutline *before, GError **error)
 {
     const FlRect rect = fl_painter_guided(painter);
-    if (known)
-        return fl_outline_ref(known);
     g_autofree uint8_t *mask = fl_alloc(fl_rect_pixels(rect), 1, "a mask", error);
-    if (!mask || !film_mask(painter, frame, mask, error))
+    if (!mask || !mask_in(painter, film, plan, frame, mask, error))
         return NULL;
     return before && fl_outline_equal(before, mask)
                ? fl_outline_ref(before)
                : fl_outline_new(mask, rect.width, rect.height, error);
+}
+
+/* The same in this film; of the two of a step it may be known. */
+static FlOutline *outline_of(const FlPainter *painter, int frame, FlOutline *known,
+                             FlOutline *before, GError **error)
+{
+    return known ? fl_outline_ref(known)
+                 : outline_in(painter, painter->shapes, painter->plan, frame, before, error);
 }
 
 /* The motion of the region's fluid over a step, to be freed; it moves by each frame of the film. */
@@ -187,13 +198,39 @@ static bool has_fluid(const FlPainter *painter)
     return painter->plan->settings.fluid > FL_FLUID_NONE;
 }
 
+const FlRegionPlan *fl_painter_earlier(const FlPainter *painter)
+{
+    const FlShapes *earlier = painter->shapes->earlier;
+    for (int p = 0; earlier && has_fluid(painter) && p < earlier->n_painted; p++)
+        if (fl_region_is_same(&earlier->painted[p], painter->plan))
+            return &earlier->painted[p];
+    return NULL;
+}
+
+/* Moves the fluid by the frames before the first one. */
+static bool roll_in(FlPainter *painter, GError **error)
+{
+    const FlShapes *shapes = painter->shapes;
+    const FlRegionPlan *earlier = fl_painter_earlier(painter);
+    g_autoptr(FlOutline) last = NULL;
+    for (int frame = 0; earlier && frame <= shapes->n_earlier; frame++) {
+        g_autoptr(FlOutline) before = last;
+        if (!(last = outline_in(painter, shapes->earlier, earlier, frame, before, error)))
+            return false;
+        if (before)
+            fl_fluid_step(painter->fluid, before, last);
+    }
+    return true;
+}
+
 bool fl_painter_open_fluid(FlPainter *painter, GError **error)
 {
     const FlRect page = guided_part(painter->plan->style, fl_painter_page(painter));
     const FlFluidDials dials = fl_fluid_dials(&painter->plan->settings);
     fl_painter_close_fluid(painter);
     return !has_fluid(painter) ||
-           (painter->fluid = fl_fluid_new(fl_painter_guided(painter), page, &dials, error));
+           ((painter->fluid = fl_fluid_new(fl_painter_guided(painter), page, &dials, error)) &&
+            roll_in(painter, error));
 }
 
 void fl_painter_close_fluid(FlPainter *painter)

@@ -204,6 +204,18 @@ bool fl_painters_need_masks(const FlPainters *painters)
     return needed;
 }
 
+bool fl_painters_flow(const FlPainters *painters)
+{
+    bool flows = false;
+    for (int p = 0; p < painters->n; p++) {
+        const FlPainter *painter = painters->painter[p];
+        flows =
+            flows || (painters->fresh[p] && !painter->reuse.known && !painter->plan->paint_files &&
+                      painter->plan->settings.fluid > FL_FLUID_NONE);
+    }
+    return flows;
+}
+
 bool fl_painters_stale(const FlPainters *painters)
 {
     bool stale = false;

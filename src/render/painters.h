@@ -23,6 +23,9 @@ typedef bool (*FlPainterWork)(void *data, int p, int step, GError **error);
  */
 void fl_painters_recall(FlPainters *painters, const FlShapes *shapes, const FlKeeping *keeping);
 
+/** True if a fluid is to carry paint of which some is not known. */
+bool fl_painters_flow(const FlPainters *painters);
+
 /** True if any region's masks are needed for its guides. */
 bool fl_painters_need_masks(const FlPainters *painters);
 

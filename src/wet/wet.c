@@ -235,12 +235,6 @@ bool fl_wet_frame(FlWet *wet, int frame, GError **error)
     return fl_wet_show(wet, error);
 }
 
-static bool is_same_region(const FlMarker *marker, const FlMarker *other)
-{
-    return g_str_equal(marker->plan->name, other->plan->name) &&
-           marker->plan->style_key == other->plan->style_key;
-}
-
 /** Swaps the contours and the marks of the last frame. */
 static void swap_edges(FlMarker *marker, FlMarker *other)
 {
@@ -260,7 +254,7 @@ bool fl_wet_follow(FlWet *wet, FlWet *earlier, GError **error)
     fl_wet_place_cells(wet);
     for (int m = 0; m < wet->n_markers; m++)
         for (int k = 0; k < earlier->n_markers; k++)
-            if (is_same_region(&wet->marker[m], &earlier->marker[k]))
+            if (fl_region_is_same(wet->marker[m].plan, earlier->marker[k].plan))
                 swap_edges(&wet->marker[m], &earlier->marker[k]);
     wet->at = 0;
     return fl_wet_show(wet, error);
