@@ -6,13 +6,11 @@
 #define THICK 0.03f  // width of a stroke, share of the page's longer side, that is no line any more
 #define PROBE_PX 256 // longest side of the small pictures on which a frame is probed
 #define TINY_PX 4.0  // side of a shape that may be there without being drawn on them
-#define MOST_KEPT (16 << 20) // bytes of coverage that a frame's probes keep
 
 static void probe_clear(void *data)
 {
     FlProbe *probe = data;
     g_free(probe->paint);
-    g_clear_pointer(&probe->kept, g_bytes_unref);
 }
 
 static GArray *new_probes(void)
@@ -33,7 +31,9 @@ bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, FlPageSize page, int width
         (FlRect){0, 0, MAX(1, (int)ceil(width / f->factor)), MAX(1, (int)ceil(height / f->factor))};
     f->probes = new_probes();
     f->coverage = fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error);
-    f->check = f->coverage ? fl_self_check_new(f->all.width, f->all.height, error) : NULL;
+    f->below =
+        f->coverage ? fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error) : NULL;
+    f->check = f->below ? fl_self_check_new(f->all.width, f->all.height, error) : NULL;
     return f->check != NULL;
 }
 
@@ -45,6 +45,8 @@ void fl_frame_probe_clear(FlFrameProbe *f)
     fl_svg_free(f->svg);
     if (f->coverage)
         cairo_surface_destroy(f->coverage);
+    if (f->below)
+        cairo_surface_destroy(f->below);
     if (f->full)
         cairo_surface_destroy(f->full);
     fl_self_check_free(f->check);
@@ -60,51 +62,6 @@ static bool cover(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlRect where
     cairo_destroy(cr);
     *box = fl_surface_bounds(f->coverage, where);
     return drawn;
-}
-
-/** Keeps what a part covers, if there is room: it is needed again in stack(). */
-static void keep_cover(FlFrameProbe *f, FlProbe *probe)
-{
-    const FlRect box = probe->box;
-    const size_t bytes = fl_rect_pixels(box);
-    const size_t stride = (size_t)cairo_image_surface_get_stride(f->coverage);
-    const unsigned char *data = cairo_image_surface_get_data(f->coverage);
-    probe->is_kept = f->kept_bytes + bytes <= MOST_KEPT;
-    if (!probe->is_kept)
-        return;
-    f->kept_bytes += bytes;
-    probe->kept_box = box;
-    uint8_t *kept = g_malloc(bytes);
-    for (int y = 0; y < box.height; y++)
-        memcpy(kept + (size_t)y * (size_t)box.width, data + (size_t)(box.y + y) * stride + box.x,
-               (size_t)box.width);
-    probe->kept = g_bytes_new_take(kept, bytes);
-}
-
-/** Puts what was kept of a part back into the frame's coverage. */
-static void put_kept(FlFrameProbe *f, const FlProbe *probe)
-{
-    const FlRect box = probe->kept_box;
-    const size_t stride = (size_t)cairo_image_surface_get_stride(f->coverage);
-    const uint8_t *kept = probe->kept ? g_bytes_get_data(probe->kept, NULL) : NULL;
-    cairo_surface_flush(f->coverage);
-    unsigned char *data = cairo_image_surface_get_data(f->coverage);
-    for (int y = 0; kept && y < box.height; y++)
-        memcpy(data + (size_t)(box.y + y) * stride + box.x, kept + (size_t)y * (size_t)box.width,
-               (size_t)box.width);
-    cairo_surface_mark_dirty(f->coverage);
-}
-
-/** As cover(), of a part that was covered before. */
-static bool cover_again(FlFrameProbe *f, const FlProbe *probe, FlRect *box, GError **error)
-{
-    // text and tiny parts have a box_in_full(), but are drawn in the small picture
-    const FlRect where = probe->leaf->text ? f->all : probe->box;
-    if (!probe->is_kept)
-        return cover(f, probe->leaf, probe->found.part, where, box, error);
-    put_kept(f, probe);
-    *box = probe->kept_box;
-    return true;
 }
 
 static float sum_of(cairo_surface_t *coverage, FlRect box)
@@ -210,7 +167,47 @@ static FlPose pose_of(FlFrameProbe *f, const FlLeaf *leaf, int index)
     return fl_point_pose((FlPoint){r.x + r.width / 2, r.y + r.height / 2});
 }
 
-static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **error)
+/** Draws a part, whose coverage is in the frame's, over those below: how much of it lies over
+ * others, and the self-check. */
+static bool stack(FlFrameProbe *f, FlProbe *probe, FlRect ink, GError **error)
+{
+    const float page = (float)(f->page.width * f->page.height * f->factor * f->factor);
+    const bool fills_page = probe->found.area_px > 0.95f * page;
+    unsigned char *under = cairo_image_surface_get_data(f->below);
+    const unsigned char *own = cairo_image_surface_get_data(f->coverage);
+    const int stride = cairo_image_surface_get_stride(f->below);
+    int64_t sum = 0, covered = 0;
+    for (int y = ink.y; y < ink.y + ink.height; y++)
+        for (int x = ink.x; x < ink.x + ink.width; x++) {
+            const size_t p = (size_t)y * stride + x;
+            sum += own[p];
+            covered += own[p] * under[p];
+            if (!fills_page)
+                under[p] = fl_over(own[p], under[p]);
+        }
+    probe->found.covers = sum ? (float)covered / (255.0f * (float)sum) : 0;
+    return fl_self_check_add(f->check, f->svg, probe->leaf, &probe->found, f->coverage, ink,
+                             f->page, error);
+}
+
+/** The same with the parts from `first` on, which are drawn again. */
+static bool stack_again(FlFrameProbe *f, guint first, GError **error)
+{
+    bool good = true;
+    for (guint i = first; i < f->probes->len && good; i++) {
+        FlProbe *probe = &g_array_index(f->probes, FlProbe, i);
+        // text and tiny parts have a box_in_full(), but are drawn in the small picture
+        const FlRect where = probe->leaf->text ? f->all : probe->box;
+        FlRect ink = {0};
+        good = cover(f, probe->leaf, probe->found.part, where, &ink, error) &&
+               stack(f, probe, ink, error);
+        fl_surface_wipe(f->coverage, ink);
+    }
+    return good;
+}
+
+/** Finds the parts of a leaf or unit; stacks: they are drawn as they are found, not as one. */
+static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, bool stacks, GError **error)
 {
     const guint first = f->probes->len;
     FlPainted parts[FL_MOST_PARTS];
@@ -237,18 +234,21 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **
         found->unit = index < 0 ? -index : 0;
         found->region = -1;
         good = good && cover(f, leaf, p->part, f->all, &probe.box, error);
+        const FlRect ink = probe.box;
         const float opacity = MAX(p->paint.peak, 1) / 255.0f;
-        found->area_px = (float)(sum_of(f->coverage, probe.box) / opacity * f->factor * f->factor);
-        keep_cover(f, &probe);
-        fl_surface_wipe(f->coverage, probe.box);
+        found->area_px = (float)(sum_of(f->coverage, ink) / opacity * f->factor * f->factor);
         if (good && (leaf->text || (probe.box.width == 0 && is_tiny(f, leaf)))) {
             good = box_in_full(f, leaf, p->part, &probe.box, &found->area_px, error);
             found->area_px /= opacity;
         }
         if (p->width > 0)
             widen(f, leaf, &probe.box);
+        const bool kept = good && probe.box.width > 0 && p->paint.alpha > 0;
+        if (kept && stacks)
+            good = stack(f, &probe, ink, error);
+        fl_surface_wipe(f->coverage, ink);
         g_array_append_val(f->probes, probe);
-        if (!good || probe.box.width == 0 || p->paint.alpha == 0)
+        if (!kept)
             g_array_set_size(f->probes, f->probes->len - 1);
     }
     relate_parts(f->probes, first);
@@ -296,20 +296,20 @@ static bool probe_leaves(FlFrameProbe *f, GError **error)
         else
             u = NULL;
         for (; i < end; i++)
-            if (!probe_leaf(f, &g_array_index(leaves->leaf, FlLeaf, i), (int)i, error))
+            if (!probe_leaf(f, &g_array_index(leaves->leaf, FlLeaf, i), (int)i, !u, error))
                 return false;
         i--;
         if (!u)
             continue;
         const int separable = is_separable(f, u, before, error);
-        if (separable < 0)
+        if (separable < 0 || (separable && !stack_again(f, before, error)))
             return false;
         if (!separable) {
             if (u->inseparable)
                 g_array_set_size(f->probes, before);
             for (guint k = before; k < f->probes->len; k++)
                 g_array_index(f->probes, FlProbe, k).found.unit = 1 + (int)unit;
-            if (!probe_leaf(f, &u->leaf, -1 - (int)unit, error))
+            if (!probe_leaf(f, &u->leaf, -1 - (int)unit, true, error))
                 return false;
         }
         unit++;
@@ -317,44 +317,7 @@ static bool probe_leaves(FlFrameProbe *f, GError **error)
     return true;
 }
 
-/** Stacks the parts once more: how much of each lies over others, and the self-check. */
-static bool stack(FlFrameProbe *f, GError **error)
-{
-    const float page = (float)(f->page.width * f->page.height * f->factor * f->factor);
-    g_autoptr(cairo_surface_t) below =
-        fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error);
-    if (!below)
-        return false;
-    unsigned char *under = cairo_image_surface_get_data(below);
-    const unsigned char *own = cairo_image_surface_get_data(f->coverage);
-    const int stride = cairo_image_surface_get_stride(below);
-    for (guint i = 0; i < f->probes->len; i++) {
-        FlProbe *probe = &g_array_index(f->probes, FlProbe, i);
-        FlRect box;
-        if (probe->found.unit > 0 && probe->found.leaf >= 0)
-            continue; // the unit comes after its leaves
-        if (!cover_again(f, probe, &box, error))
-            return false;
-        const bool fills_page = probe->found.area_px > 0.95f * page;
-        int64_t sum = 0, covered = 0;
-        for (int y = box.y; y < box.y + box.height; y++)
-            for (int x = box.x; x < box.x + box.width; x++) {
-                const size_t p = (size_t)y * stride + x;
-                sum += own[p];
-                covered += own[p] * under[p];
-                if (!fills_page)
-                    under[p] = fl_over(own[p], under[p]);
-            }
-        probe->found.covers = sum ? (float)covered / (255.0f * (float)sum) : 0;
-        if (!fl_self_check_add(f->check, f->svg, probe->leaf, &probe->found, f->coverage, box,
-                               f->page, error))
-            return false;
-        fl_surface_wipe(f->coverage, box);
-    }
-    return true;
-}
-
 bool fl_frame_probe_run(FlFrameProbe *f, GError **error)
 {
-    return probe_leaves(f, error) && stack(f, error);
+    return probe_leaves(f, error);
 }

@@ -10,24 +10,21 @@ typedef struct FlProbe {
     FlSurveyPart found;
     const FlLeaf *leaf;
     char *paint;
-    FlRect box;      // px of the small picture
-    bool is_kept;    // its coverage is known and need not be drawn again
-    FlRect kept_box; // of it; may be empty
-    GBytes *kept;    // its coverage, of kept_box; NULL if that is empty
+    FlRect box; // px of the small picture
 } FlProbe;
 
 /** The state of probing one frame, for one thread. */
 typedef struct FlFrameProbe {
     FlSvg *svg;
-    FlPageSize page; // in the small picture
-    double factor;   // px of the picture per px of the small one
-    cairo_surface_t *coverage;
-    cairo_surface_t *full; // in the picture's own size; made when first needed
+    FlPageSize page;           // in the small picture
+    double factor;             // px of the picture per px of the small one
+    cairo_surface_t *coverage; // of one part
+    cairo_surface_t *below;    // of all parts so far
+    cairo_surface_t *full;     // in the picture's own size; made when first needed
     int full_width, full_height;
     FlRect all;
     GArray *probes;
     FlOutlines *outlines; // of all leaves; made when first needed
-    size_t kept_bytes;    // of the probes
     FlSelfCheck *check;
 } FlFrameProbe;
 
