@@ -148,8 +148,6 @@ table() {
 2|--paint: one file for all frames; expected a number in the name*|good --paint x_{region}.png
 2|--merge composes what --paint has written, or what ebsynth has painted *|good --merge
 1|eb/red-aa3311/out_0001.png: there is no such file; *|good --merge --ebsynth eb
-1|region red-aa3311: ./still: has no tile; expected a style of transport*|good --tile ./still
-2|region red-aa3311: the engine transport moves ink by its own style; *|good --engine transport --tile ./still
 2|region red-aa3311: the engine transport has no guides for --ebsynth; *|good --engine transport --ebsynth eb
 2|dumped/red-aa3311/clear.png: is read by this render; *|good -y -b dumped/red-aa3311/clear.png --ebsynth dumped -o y_%d.png
 2|--merge paints nothing that --report or --dump could show*|good --merge --paint {region}_%d.png --dump d

@@ -152,12 +152,6 @@ stop painted2 KILL 2 --paint 'painted2/paint/{region}_%04d.png'
 paint painted2 --paint 'painted2/paint/{region}_%04d.png' && same painted2/paint paint
 result $? 'and the paint that is kept is complete'
 
-tile=$(dirname "$style")/styles/11
-paint moved_whole --tile "$tile"
-stop moved KILL 3 --tile "$tile"
-paint moved --tile "$tile" && same moved moved_whole && ! same moved whole
-result $? 'paint that a tile moves goes on as well'
-
 # as another run has it
 mkdir both
 exec 9>both/.w_%d.png.lock

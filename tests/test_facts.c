@@ -15,7 +15,7 @@
 /* A film of four frames that links to, and is painted with, a file of each kind. */
 typedef struct Film {
     Scratch *folder;
-    char *inputs, *output, *cache, *style, *tile, *flow, *background, *paper, *config, *state;
+    char *inputs, *output, *cache, *style, *ink, *flow, *background, *paper, *config, *state;
 } Film;
 
 static void copy_file(const char *from, const char *to)
@@ -77,15 +77,15 @@ static void film_make(void)
     const char *fixtures = g_getenv("FLUIDY_FIXTURES");
     film.folder = scratch_make();
     char **const paths[] = {&film.inputs, &film.output, &film.cache,      &film.style,
-                            &film.tile,   &film.flow,   &film.background, &film.paper};
+                            &film.ink,    &film.flow,   &film.background, &film.paper};
     static const char *const names[] = {"w_%d.svg", "out_%d.png", "cache",    "style",
-                                        "tile",     "f_%d.flo",   "b_%d.png", "paper.png"};
+                                        "ink",      "f_%d.flo",   "b_%d.png", "paper.png"};
     for (size_t k = 0; k < G_N_ELEMENTS(names); k++)
         *paths[k] = g_build_filename(film.folder, names[k], NULL);
     g_autofree char *small = g_build_filename(fixtures, "style-small", NULL);
     g_autofree char *transport = g_build_filename(fixtures, "styles", "11", NULL);
     copy_folder(small, film.style);
-    copy_folder(transport, film.tile);
+    copy_folder(transport, film.ink);
     g_free(scratch_write(film.folder, "look.css", "circle { fill: #aa3311 }"));
     g_free(scratch_write(film.folder, "paper.png", "a sheet"));
     g_autofree char *png = g_build_filename(film.folder, "p.png", NULL);
@@ -111,7 +111,7 @@ static void film_make(void)
 static void film_clear(void)
 {
     remove_folder(film.folder);
-    char *const paths[] = {film.inputs, film.output,     film.cache, film.style,  film.tile,
+    char *const paths[] = {film.inputs, film.output,     film.cache, film.style,  film.ink,
                            film.flow,   film.background, film.paper, film.config, film.state};
     for (size_t k = 0; k < G_N_ELEMENTS(paths); k++)
         g_free(paths[k]);
@@ -195,7 +195,7 @@ static FlRenderOptions options_of(const char *inputs[2], FlSetting settings[3])
 {
     inputs[0] = film.inputs, inputs[1] = NULL;
     settings[0] = (FlSetting){.name = "style", .value = film.style};
-    settings[1] = (FlSetting){.name = "tile", .value = film.tile};
+    settings[1] = (FlSetting){.region = "black-000000", .name = "style", .value = film.ink};
     return (FlRenderOptions){.size = sizeof(FlRenderOptions),
                              .inputs = inputs,
                              .output = film.output,
@@ -223,10 +223,9 @@ static void change(const char *path)
 }
 
 static const char *const files[] = {
-    "w_1.svg",        "w_4.svg",        "look.css",           "p.png",
-    "f_2.flo",        "b_2.png",        "paper.png",          "style/style.ini",
-    "style/frames/*", "tile/style.ini", "tile/transport.png", "tile/masks/*",
-    "fonts/own.ttf",
+    "w_1.svg",           "w_4.svg",     "look.css",        "p.png",          "f_2.flo",
+    "b_2.png",           "paper.png",   "style/style.ini", "style/frames/*", "ink/style.ini",
+    "ink/transport.png", "ink/masks/*", "fonts/own.ttf",
 };
 
 /* The first file of a folder, where the name ends in a star. */
@@ -290,7 +289,7 @@ static void a_change_beside_the_inputs_is_seen(void)
     }
 }
 
-/* The digests of all that decides a film's frames, and the paint of its first region. */
+/* The digests of all that decides a film's frames, and the paint of its regions. */
 typedef struct Digests {
     FlDigest frames, paint;
 } Digests;
@@ -302,9 +301,13 @@ static Digests digests_of(const FlRenderOptions *options)
     g_autoptr(FlPlan) plan = plan_of(&own);
     const FlShapes *shapes = &plan->shapes;
     g_autoptr(FlFacts) frames = fl_plan_facts(plan), guides = fl_plan_facts_of_paint(plan);
-    g_autoptr(FlFacts) paint = fl_region_facts(shapes, &shapes->painted[0], plan->inputs);
+    g_autoptr(FlFacts) paint = fl_facts_new();
+    for (int p = 0; p < shapes->n_painted; p++) {
+        g_autoptr(FlFacts) region = fl_region_facts(shapes, &shapes->painted[p], plan->inputs);
+        fl_facts_append(paint, region);
+        fl_region_facts_add_flow(paint, shapes, p, plan->inputs);
+    }
     fl_facts_append(paint, guides);
-    fl_region_facts_add_flow(paint, shapes, 0, plan->inputs);
     return (Digests){fl_facts_digest(frames), fl_facts_digest(paint)};
 }
 
@@ -397,7 +400,7 @@ static void assert_file_counts(const FlRenderOptions *options, Digests before, c
 static void files_count_for_frames_and_paint(void)
 {
     static const char *const of_paint[] = {"p.png", "f_2.flo", "style/style.ini",
-                                           "tile/transport.png"};
+                                           "ink/transport.png"};
     const char *inputs[2];
     FlSetting settings[3];
     FlRenderOptions options = options_of(inputs, settings);

@@ -201,7 +201,7 @@ static void the_facts_have_every_file_that_is_read(void)
     g_autofree char *frame = g_build_filename(recording, g_dir_read_name(frames), NULL);
     const char *const inputs[] = {drawing, NULL};
     const FlSetting settings[] = {{.name = "style", .value = style_folder},
-                                  {.name = "tile", .value = tile_folder}};
+                                  {.region = "red-aa3311", .name = "style", .value = tile_folder}};
     const FlRenderOptions options = {.inputs = inputs, .settings = settings, .n_settings = 2};
     const char *const files[] = {drawing, linked, style, frame, tile, potential};
     for (size_t k = 0; k < G_N_ELEMENTS(files); k++) {
@@ -222,7 +222,6 @@ static void the_facts_have_every_file_that_is_read(void)
 static void styles_are_named_by_the_options_of_their_type(void)
 {
     g_assert_true(fl_option_names_style("style"));
-    g_assert_true(fl_option_names_style("tile"));
     g_assert_false(fl_option_names_style("tint"));
     g_assert_false(fl_option_names_style("width"));
 }

@@ -124,57 +124,6 @@ static void a_frame_is_what_the_formulas_say(void)
     disk_free(disk);
 }
 
-/* ---- painted ink ------------------------------------------------------------------------------
- */
-
-static const uint8_t blotched[3] = {60, 100, 170}, bare[3] = {250, 240, 230};
-
-/* Paint in blotches on the test's paper, inside the mask. */
-static void paint_blotches(Disk *disk)
-{
-    for (size_t p = 0; p < PIXELS; p++)
-        for (size_t c = 0; c < 3; c++) {
-            FlRng rng = {fl_key(5, p / 7)};
-            const float paint = blotched[c] + 60 * fl_rng_float(&rng) - 30 - bare[c];
-            disk->rgb[3 * p + c] =
-                (uint8_t)((float)bare[c] + paint * (float)disk->guides.mask[p] / 255);
-        }
-}
-
-static double density_of(const Disk *disk, size_t channel)
-{
-    double sum = 0;
-    for (size_t p = 0; p < PIXELS; p++)
-        sum += (double)disk->guides.mask[p] *
-               (double)(fl_density(disk->rgb[3 * p + channel]) - fl_density(bare[channel]));
-    return sum;
-}
-
-static void painted_ink_is_moved_and_stays_as_much(void)
-{
-    Disk *disk = disk_new(1), *still = disk_new(0);
-    draw_disk(&disk->guides, 60, 0);
-    draw_disk(&still->guides, 60, 0);
-    paint_blotches(disk);
-    paint_blotches(still);
-    g_autofree uint8_t *before = g_memdup2(still->rgb, sizeof still->rgb);
-    g_assert_true(fl_carried_ink_move(disk->ink, &disk->guides, disk->rgb, NULL));
-    g_assert_true(fl_carried_ink_move(still->ink, &still->guides, still->rgb, NULL));
-    g_assert_cmpmem(still->rgb, sizeof still->rgb, before, sizeof still->rgb); // no strength
-    for (size_t c = 0; c < 3; c++)
-        g_assert_cmpfloat(fabs(density_of(disk, c) / density_of(still, c) - 1), <, 0.01);
-    double moved = 0, n = 0;
-    for (size_t p = 0; p < PIXELS; p++) {
-        if (!disk->guides.mask[p])
-            g_assert_cmpmem(disk->rgb + 3 * p, 3, before + 3 * p, 3);
-        if (disk->guides.distance[p] > 8)
-            moved += abs(disk->rgb[3 * p] - before[3 * p]), n++;
-    }
-    g_assert_cmpfloat(moved / n, >, 10);
-    disk_free(disk);
-    disk_free(still);
-}
-
 static void the_pattern_rides_on_the_drawing(void)
 {
     Disk *disk = disk_new(1);
@@ -474,7 +423,6 @@ int main(int argc, char **argv)
     TEST(the_map_itself_keeps_the_ink);
     TEST(no_strength_is_a_flat_fill);
     TEST(a_frame_is_what_the_formulas_say);
-    TEST(painted_ink_is_moved_and_stays_as_much);
     TEST(the_pattern_rides_on_the_drawing);
     TEST(a_region_at_rest_has_the_same_bytes);
     TEST(the_same_bytes_on_any_thread_count);

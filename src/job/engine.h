@@ -8,7 +8,6 @@
 /** The input of a region's painting; it outlives the region's state. */
 typedef struct FlEngineInput {
     const FlStyleInstance *style;
-    const FlStyleInstance *tile; // its tile moves the paint; may be NULL
     const FlRegionSettings *settings;
     FlSynthSize size;   // of the picture, and of the frames
     uint64_t seed;      // of the render and the region

@@ -120,8 +120,6 @@ static void add_painted(FlFacts *facts, const FlPlan *plan)
             known = known || g_str_equal(shapes->painted[q].style->path, painted->style->path);
         if (!known)
             add_style(facts, plan->inputs, painted->style->path);
-        if (painted->tile)
-            add_style(facts, plan->inputs, painted->tile->path);
     }
 }
 
@@ -218,8 +216,6 @@ FlFacts *fl_region_facts(const FlShapes *shapes, const FlRegionPlan *region, FlI
         add_numbers(facts, shapes->drawing);
     add_values(facts, FL_SCOPE_REGION, &region->settings, NULL, false);
     add_style(facts, inputs, region->style->path);
-    if (region->tile)
-        add_style(facts, inputs, region->tile->path);
     return facts;
 }
 

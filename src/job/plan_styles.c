@@ -2,7 +2,6 @@
 #include "job/plan.h"
 
 #include "base/page.h"
-#include "job/moved_paint.h"
 #include "style/style_folder.h"
 #include <math.h>
 #include <string.h>
@@ -138,18 +137,12 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     const float px = texture_px(plan, &painted->settings.params);
     fl_params_scale_lengths(&painted->settings.params, px);
     list_style(plan, painted->settings.style);
-    list_style(plan, painted->settings.tile);
     painted->style = fl_style_cache_get(plan->styles, &painted->settings, px, error);
     if (!painted->style)
         return false;
     if (fl_field_px(painted->style->exemplar) == 2)
         fl_params_scale_lengths(&painted->settings.params, .5f);
-    painted->engine = fl_engine_of_region(plan->styles, painted->style, &painted->settings, px,
-                                          &painted->tile, error);
-    if (!painted->engine) {
-        g_prefix_error(error, "region %s: ", r->name);
-        return false;
-    }
+    painted->engine = fl_engine_choose(painted->settings.engine, painted->style->path);
     if (!fl_plan_choose_fluid(painted, plan->options.flow, error) || !check_keyed(painted, error) ||
         !check_export(plan, painted, error) || !warn_of_style(plan, painted, error))
         return false;

@@ -19,7 +19,6 @@ typedef struct FlRegionPlan {
     int style_key;
     bool more;                    // the next painted region is the same region in its next style
     const FlStyleInstance *style; // borrowed
-    const FlStyleInstance *tile;  // borrowed: its tile moves the paint; may be NULL
     const FlEngine *engine;
     const char *paint_files; // borrowed: pattern of files of its paint; NULL: it is painted
     FlRect place;            // of the paint in those files; width 0: not known

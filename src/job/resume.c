@@ -429,8 +429,6 @@ static void complete_record(FlRecord *record, const FlPlan *plan)
     for (int p = 0; p < plan->shapes.n_painted; p++) {
         const FlRegionPlan *region = &plan->shapes.painted[p];
         fl_facts_add(record->found, region->settings.style, region->style->path);
-        if (region->tile)
-            fl_facts_add(record->found, region->settings.tile, region->tile->path);
     }
 }
 

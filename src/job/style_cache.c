@@ -98,7 +98,7 @@ static int window_of(const FlParams *params, const FlStyle *style)
 static bool enlarges(const FlStyleCache *cache, const FlRegionSettings *settings, const char *path)
 {
     const FlParams *params = &settings->params;
-    return params->half_field && fl_knows_depth(params) && !settings->tile && !cache->exact &&
+    return params->half_field && fl_knows_depth(params) && !cache->exact &&
            fl_engine_choose(settings->engine, path)->enlarges;
 }
 

@@ -293,7 +293,6 @@ void fl_region_settings_init(FlRegionSettings *settings)
 void fl_region_settings_clear(FlRegionSettings *settings)
 {
     g_clear_pointer(&settings->style, g_free);
-    g_clear_pointer(&settings->tile, g_free);
     g_clear_pointer(&settings->merge_with, g_free);
     g_clear_pointer(&settings->wet_with, g_free);
     g_clear_pointer(&settings->keyed, g_ptr_array_unref);

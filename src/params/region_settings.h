@@ -86,7 +86,6 @@ typedef struct FlRegionSettings {
     char *style; // a name or a path; NULL: not set
     FlEngineChoice engine;
     double strength; // of transport: factor on the way of the ink
-    char *tile;      // a transport style that moves the paint, or NULL
     FlTint tint;
     bool has_colour;   // with FL_TINT_FILL: `colour` instead of the drawing's fill
     uint8_t colour[3]; // sRGB

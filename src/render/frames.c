@@ -459,10 +459,8 @@ static void drop_styles(const FlPlan *plan)
 {
     const FlShapes *shapes = &plan->shapes;
     g_autoptr(GPtrArray) used = g_ptr_array_new();
-    for (int p = 0; p < shapes->n_painted; p++) {
+    for (int p = 0; p < shapes->n_painted; p++)
         g_ptr_array_add(used, (gpointer)shapes->painted[p].style);
-        g_ptr_array_add(used, (gpointer)shapes->painted[p].tile);
-    }
     fl_style_cache_trim(plan->styles, used);
 }
 

@@ -3,7 +3,6 @@
 #include "base/page.h"
 #include "base/schedule.h"
 #include "compose/colourise.h"
-#include "job/moved_paint.h"
 #include "job/plan.h"
 #include "job/style_cache.h"
 #include "keep/sealed.h"
@@ -125,10 +124,10 @@ static bool choose_style(GivenRegion *given, GError **error)
     plan->style = fl_style_cache_get(given->styles, settings, px, error);
     if (plan->style && fl_field_px(plan->style->exemplar) == 2)
         fl_params_scale_lengths(&settings->params, .5f);
-    plan->engine = plan->style ? fl_engine_of_region(given->styles, plan->style, settings, px,
-                                                     &plan->tile, error)
-                               : NULL;
-    return plan->engine && fl_plan_choose_fluid(plan, region->flow, error);
+    if (!plan->style)
+        return false;
+    plan->engine = fl_engine_choose(settings->engine, plan->style->path);
+    return fl_plan_choose_fluid(plan, region->flow, error);
 }
 
 static bool make_planes(GivenRegion *given, GError **error)

@@ -118,7 +118,6 @@ static bool open_engine(FlPainter *painter, GError **error)
     const FlRegionPlan *plan = painter->plan;
     const FlRect rect = painter->result.rect, page = fl_painter_page(painter);
     const FlEngineInput input = {plan->style,
-                                 plan->tile,
                                  &plan->settings,
                                  {rect.width, rect.height, page.width, page.height},
                                  fl_key(painter->shapes->seed, g_str_hash(plan->name)),

@@ -120,8 +120,8 @@ static bool open_motion(FlPainters *painters, GError **error)
 static bool paints_so(const FlPainter *painter, const FlRegionPlan *region, FlDigest method)
 {
     const FlRegionPlan *before = painter->plan;
-    return before && before->style == region->style && before->tile == region->tile &&
-           fl_digest_is_known(method) && fl_digest_is_same(painter->reuse.method, method);
+    return before && before->style == region->style && fl_digest_is_known(method) &&
+           fl_digest_is_same(painter->reuse.method, method);
 }
 
 static void free_painter(FlPainters *painters, FlPainter *painter)

@@ -196,80 +196,12 @@ static bool move_ink(const FlCarriedInk *ink, const FlGuides *guides, FlRect rec
     return true;
 }
 
-/* ---- painted ink ------------------------------------------------------------------------------
- */
-
-/* One channel's density of the paint, which may be a little less than its paper's. */
-static void read_density(const FlCarriedInk *ink, const FlGuides *guides, FlRect rect,
-                         const uint8_t *rgb, int channel, float *density)
-{
-    const int32_t paper = fl_density(ink->input.colour.paper[channel]);
-    for (int y = 0; y < rect.height; y++)
-        for (int x = 0; x < rect.width; x++) {
-            const size_t p = (size_t)(y + rect.y) * (size_t)guides->width + (size_t)(x + rect.x);
-            density[(size_t)y * (size_t)rect.width + (size_t)x] =
-                (float)(fl_density(rgb[3 * p + (size_t)channel]) - paper);
-        }
-}
-
-/* The factor that gives the mask as much ink as before it was carried. */
-static float to_as_much(const FlGuides *guides, FlRect rect, const float *density,
-                        const float *carried)
-{
-    double before = 0, after = 0;
-    for (int y = 0; y < rect.height; y++)
-        for (int x = 0; x < rect.width; x++) {
-            const uint8_t c =
-                guides->mask[(size_t)(y + rect.y) * (size_t)guides->width + (size_t)(x + rect.x)];
-            const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
-            before += (double)c * (double)density[p], after += (double)c * (double)carried[p];
-        }
-    return before > 0 && after > 0 ? (float)(before / after) : 1;
-}
-
-static void write_density(const FlCarriedInk *ink, const FlGuides *guides, FlRect rect,
-                          const float *density, float factor, int channel, uint8_t *rgb)
-{
-    const float paper = (float)fl_density(ink->input.colour.paper[channel]);
-    for (int y = 0; y < rect.height; y++)
-        for (int x = 0; x < rect.width; x++) {
-            const size_t p = (size_t)(y + rect.y) * (size_t)guides->width + (size_t)(x + rect.x);
-            const float d = paper + factor * density[(size_t)y * (size_t)rect.width + (size_t)x];
-            if (guides->mask[p])
-                rgb[3 * p + (size_t)channel] =
-                    (uint8_t)((fl_density_level((int32_t)CLAMP(d, 0, (float)FL_DENSITY_MAX)) +
-                               128) /
-                              256);
-        }
-}
-
 static bool advance(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, GError **error)
 {
     const int reach = MAX((int)(REACH * ink->input.scale + 0.5f), LEAST_REACH);
     if (rect.width > 0)
         return fl_material_layers_advance(&ink->layers, guides, rect, reach, error);
     fl_material_layers_clear(&ink->layers);
-    return true;
-}
-
-bool fl_carried_ink_move(FlCarriedInk *ink, const FlGuides *guides, uint8_t *rgb, GError **error)
-{
-    const FlRect rect = mask_rect(guides);
-    const size_t n = fl_rect_pixels(rect);
-    g_auto(FlFlowMap) map = {0};
-    if (!advance(ink, guides, rect, error))
-        return false;
-    if (n == 0 || *ink->input.strength == 0) // the bytes stay as they are
-        return true;
-    g_autofree float *density = fl_alloc(2 * n, sizeof *density, "a density", error);
-    if (!density || !find_map(ink, guides, rect, &map, error))
-        return false;
-    for (int c = 0; c < 3; c++) {
-        read_density(ink, guides, rect, rgb, c, density);
-        fl_flow_map_carry(&map, density, density + n);
-        write_density(ink, guides, rect, density + n,
-                      to_as_much(guides, rect, density, density + n), c, rgb);
-    }
     return true;
 }
 

@@ -36,13 +36,6 @@ bool fl_carried_ink_amounts(FlCarriedInk *ink, const FlGuides *guides, float *am
 /** The same as sRGB, 3 bytes a pixel. FL_ERROR_NO_MEMORY. */
 bool fl_carried_ink_frame(FlCarriedInk *ink, const FlGuides *guides, uint8_t *rgb, GError **error);
 
-/**
- * Moves the ink that is on rgb, width * height * 3 sRGB over the colour's paper, inside the mask:
- * rgb is the next frame, as above. Each channel's density is carried, so that no ink is made or
- * lost. FL_ERROR_NO_MEMORY.
- */
-bool fl_carried_ink_move(FlCarriedInk *ink, const FlGuides *guides, uint8_t *rgb, GError **error);
-
 /** The state after the last frame; fl_carried_ink_load() of one made the same way continues. */
 GBytes *fl_carried_ink_save(const FlCarriedInk *ink, GError **error);
 

@@ -182,18 +182,6 @@ void fl_flow_map_run(FlFlowMap *map, const float *velocity)
         }
 }
 
-void fl_flow_map_carry(const FlFlowMap *map, const float *density, float *carried)
-{
-    const float *u = map->u[FL_SQUARINGS];
-#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(at(map, 0, map->height)))
-    for (int y = 0; y < map->height; y++)
-        for (int x = 0; x < map->width; x++) {
-            const size_t p = at(map, x, y);
-            const Cell cell = cell_of(map, u, x, y);
-            carried[p] = sample(&cell, density, 1) * map->jacobian[p];
-        }
-}
-
 /* From the derivative by the determinant that by the whole map. */
 static void by_map(const FlFlowMap *map, const float *by_jacobian, float *by_u)
 {

@@ -30,10 +30,6 @@ void fl_velocity_adjoint(const FlFlowMap *map, const float *by_velocity, float *
 /** Fills u and jacobian. */
 void fl_flow_map_run(FlFlowMap *map, const float *velocity);
 
-/** Carries a density by the map: samples it at the map's origin of each pixel, times the
- * determinant. */
-void fl_flow_map_carry(const FlFlowMap *map, const float *density, float *carried);
-
 /** The derivative on a torus by the velocity from that by the determinant. Errors:
  * FL_ERROR_NO_MEMORY. */
 bool fl_flow_map_adjoint(const FlFlowMap *map, const float *by_jacobian, float *by_velocity,
