@@ -359,13 +359,6 @@ bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, c
     return done;
 }
 
-bool fl_surround_joins(const FlSurround *surround, int region, int frame)
-{
-    const FlMaskStore *planes = surround->planes;
-    return fl_mask_store_has(planes, plane_of(surround, TOGETHER, region), frame) ||
-           fl_mask_store_has(planes, plane_of(surround, CLOSED, region), frame);
-}
-
 bool fl_surround_joins_as_in(const FlSurround *surround, int region, int a, int b)
 {
     const FlMaskStore *planes = surround->planes;
@@ -373,42 +366,6 @@ bool fl_surround_joins_as_in(const FlSurround *surround, int region, int a, int 
     return p->together == q->together && p->closed == q->closed &&
            fl_mask_store_same(planes, plane_of(surround, TOGETHER, region), a, b) &&
            fl_mask_store_same(planes, plane_of(surround, CLOSED, region), a, b);
-}
-
-/**
- * Adds where the planes of two frames differ, or where either is anything if its weight does;
- * scratch: two masks of `part`.
- */
-static bool add_difference(const FlMaskStore *planes, int plane, const int frame[2],
-                           const uint8_t weight[2], FlRect part, uint8_t *scratch, uint8_t *differs,
-                           GError **error)
-{
-    const size_t n = fl_rect_pixels(part);
-    const bool all = weight[0] != weight[1];
-    if (!all && fl_mask_store_same(planes, plane, frame[0], frame[1]))
-        return true;
-    if (!fl_mask_store_get(planes, plane, frame[0], part, scratch, error) ||
-        !fl_mask_store_get(planes, plane, frame[1], part, scratch + n, error))
-        return false;
-    for (size_t p = 0; p < n; p++)
-        differs[p] |= all ? scratch[p] | scratch[n + p] : scratch[p] ^ scratch[n + p];
-    return true;
-}
-
-bool fl_surround_differs(const FlSurround *surround, int region, int a, int b, FlRect part,
-                         uint8_t *differs, GError **error)
-{
-    const size_t n = fl_rect_pixels(part);
-    const Weights *p = weights_of(surround, region, a), *q = weights_of(surround, region, b);
-    const uint8_t together[2] = {p->together, q->together}, closed[2] = {p->closed, q->closed};
-    const int frame[2] = {a, b};
-    g_autofree uint8_t *scratch = fl_alloc_unset(2 * n, 1, "a mask", error);
-    memset(differs, 0, n);
-    return scratch &&
-           add_difference(surround->planes, plane_of(surround, TOGETHER, region), frame, together,
-                          part, scratch, differs, error) &&
-           add_difference(surround->planes, plane_of(surround, CLOSED, region), frame, closed, part,
-                          scratch, differs, error);
 }
 
 bool fl_surround_get(const FlSurround *surround, int region, int frame, FlRect part,

@@ -42,17 +42,9 @@ typedef struct FlSurroundPlanes {
     uint8_t *shown;  // the coverage of all shapes
 } FlSurroundPlanes;
 
-/** Returns: true if a region shares edges with any shape. */
-bool fl_surround_joins(const FlSurround *surround, int region, int frame);
-
 /** Returns: true if the shapes that share edges with a region are the same near it in two frames,
  * whatever other shapes move there. */
 bool fl_surround_joins_as_in(const FlSurround *surround, int region, int a, int b);
-
-/** Marks the pixels at which these shapes differ: differs, a byte a pixel of `part`, is 0 where
- * they are the same. */
-bool fl_surround_differs(const FlSurround *surround, int region, int a, int b, FlRect part,
-                         uint8_t *differs, GError **error);
 
 /** Reads a part of a frame. Returns: true with `around` to be cleared. */
 bool fl_surround_get(const FlSurround *surround, int region, int frame, FlRect part,

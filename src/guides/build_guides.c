@@ -5,8 +5,7 @@
  *   outline_of   mask, box, distance
  *   distance_of  the distance smoothed along time and in space, if asked for [P21 §4.1]
  *   motion_of    the flow of one interval
- *   finish_frame the flow smoothed along time [F21 App. A], direction, extent, what changes; into
- * the spill
+ *   finish_frame the flow smoothed along time [F21 App. A], direction, extent; into the spill
  *
  * The outline of one frame, the motion of an earlier one and the finish of a yet earlier one run in
  * parallel, since one region is often most of a film; they do not need each other's results.
@@ -14,7 +13,6 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "guides/blur.h"
-#include "guides/change_map.h"
 #include "guides/direction.h"
 #include "guides/displacement.h"
 #include "guides/extent.h"
@@ -52,7 +50,7 @@ typedef struct Builder {
     Smoothed smoothed[3];
     uint8_t *mask; // scratch: a frame
     FlExtent *extent;
-    FlChangeMap changes; // of the frame that is being finished
+    bool stirs;          // flow or motion of the frame that is being finished
     bool previous_moves; // of the frame that was finished last
 } Builder;
 
@@ -70,7 +68,6 @@ static void builder_clear(Builder *b)
     g_free(b->dist_weight);
     g_free(b->mask);
     fl_extent_free(b->extent);
-    fl_change_map_clear(&b->changes);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Builder, builder_clear)
@@ -101,8 +98,7 @@ static bool builder_init(Builder *b, FlGuideSequence *sequence, GError **error)
         b->outlines[s].frame = b->motions[s].frame = -1;
     for (int s = 0; s < 3; s++)
         b->smoothed[s].frame = -1;
-    if (!(b->mask = fl_alloc(n, 1, "a mask", error)) ||
-        !fl_change_map_init(&b->changes, source->width, source->height, error))
+    if (!(b->mask = fl_alloc(n, 1, "a mask", error)))
         return false;
     b->extent = fl_extent_new(source->width, source->height, error);
     return b->extent;
@@ -335,11 +331,23 @@ static bool put_shape(Builder *b, int frame, FlOutline *outline, const float *fl
                         error);
 }
 
+/** True if a flow of integers is faster than still anywhere in the shape. */
+static bool any_flows(const int32_t *flow, const FlOutline *outline, float still_px)
+{
+    const float scale = 1.0f / FL_FLOW_ONE, still = still_px * still_px;
+    bool flows = false;
+    for (size_t p = 0; p < fl_rect_pixels(outline->box) && !flows; p++) {
+        const float u = (float)flow[2 * p] * scale, v = (float)flow[2 * p + 1] * scale;
+        flows = outline->coverage[p] >= FL_INSIDE && u * u + v * v > still;
+    }
+    return flows;
+}
+
 /** Stores the flow, of integers. */
 static bool put_flow(Builder *b, int frame, const FlOutline *outline, const int32_t *flow,
                      GError **error)
 {
-    fl_change_map_mark_flow(&b->changes, outline, flow, b->sequence->params.still_px);
+    b->stirs |= any_flows(flow, outline, b->sequence->params.still_px);
     b->sequence->frames[frame].holder[FL_GUIDE_PLANE_FLOW] = frame;
     return fl_plane_store_put(b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_FLOW),
                               flow, 2 * fl_rect_pixels(outline->box), 2, error);
@@ -389,6 +397,16 @@ static bool any_known(const int32_t *motion, const FlOutline *outline)
     return known;
 }
 
+/** True if anything in the shape is known to move. */
+static bool any_moves(const int32_t *motion, const FlOutline *outline)
+{
+    bool moves = false;
+    for (size_t p = 0; p < fl_rect_pixels(outline->box) && !moves; p++)
+        moves = outline->coverage[p] >= FL_INSIDE && motion[2 * p] != FL_MOTION_UNKNOWN &&
+                (motion[2 * p] | motion[2 * p + 1]) != 0;
+    return moves;
+}
+
 /** Stores the drawing's motion into this frame, if there is any: *motion, to be freed, else NULL.
  */
 static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, int32_t **motion,
@@ -423,7 +441,7 @@ static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, int32_
         b->sequence->frames[frame].unknown = true;
         return true;
     }
-    fl_change_map_mark_motion(&b->changes, outline, fixed);
+    b->stirs |= any_moves(fixed, outline);
     b->sequence->frames[frame].holder[FL_GUIDE_PLANE_MOTION] = frame;
     *motion = g_steal_pointer(&fixed);
     return fl_plane_store_put(b->sequence->spill,
@@ -456,26 +474,6 @@ static void drop_normals(const Builder *b, int frame, FlOutline *outline)
         g_clear_pointer(&outline->normal, g_free);
 }
 
-/** Notes whether the frame rests and, where it does not, stores what changes since the one before.
- * A frame that follows no shape is all new. */
-static bool put_changes(Builder *b, int frame, const FlOutline *outline, GError **error)
-{
-    FlFrameRecord *record = &b->sequence->frames[frame];
-    const FlOutline *before = b->outlines[(frame + b->n_slots - 1) % b->n_slots].outline;
-    FlChangeMap *changes = &b->changes;
-    if (frame == 0 || outline->empty || record[-1].empty)
-        return true;
-    fl_change_map_mark_change(changes, before, outline);
-    record->rests = !changes->any;
-    if (record->rests)
-        return true;
-    fl_change_map_mark_taken(changes, before);
-    fl_change_map_mark_taken(changes, outline);
-    record->holder[FL_GUIDE_PLANE_CHANGES] = frame;
-    return fl_spill_put(b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_CHANGES),
-                        changes->square, fl_change_map_squares(changes), error);
-}
-
 static bool finish_frame(Builder *b, int frame, GError **error)
 {
     FlFrameRecord *record = &b->sequence->frames[frame];
@@ -484,8 +482,8 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     if (!outline_of(b, frame, &outline, error))
         return false;
     // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): set where no error is
-    *record = (FlFrameRecord){outline->box, outline->empty, .holder = {-1, -1, -1, -1, -1, -1, -1}};
-    fl_change_map_reset(&b->changes);
+    *record = (FlFrameRecord){outline->box, outline->empty, .holder = {-1, -1, -1, -1, -1, -1}};
+    b->stirs = false;
     if (outline->box.width == 0) {
         fl_extent_step(b->extent, &record->box, NULL, NULL, NULL, NULL);
         return true;
@@ -500,7 +498,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     b->previous_moves = flow != NULL;
     if (still) { // equals the frame before
         memcpy(record->holder, record[-1].holder, sizeof record->holder);
-        record->holder[FL_GUIDE_PLANE_MOTION] = record->holder[FL_GUIDE_PLANE_CHANGES] = -1;
+        record->holder[FL_GUIDE_PLANE_MOTION] = -1;
     } else if (!put_shape(b, frame, outline, flow, error) ||
                !put_motion(b, frame, outline, flow, error) ||
                !put_unrounded(b, frame, outline, flow, error)) {
@@ -509,8 +507,10 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     drop_normals(b, frame, outline);
     g_clear_pointer(&flow, g_free); // the drawing's motion takes much itself
     g_autofree int32_t *motion = NULL;
-    return put_drawing_motion(b, frame, outline, &motion, error) &&
-           put_changes(b, frame, outline, error);
+    if (!put_drawing_motion(b, frame, outline, &motion, error))
+        return false;
+    record->rests = frame > 0 && !outline->empty && last->outline == outline && !b->stirs;
+    return true;
 }
 
 /** The last frame whose outline the motion of a frame needs. */

@@ -14,7 +14,6 @@ typedef enum FlGuidePlane {
     FL_GUIDE_PLANE_MINUS,
     FL_GUIDE_PLANE_MOTION,    // interleaved, FL_MOTION_ONE a px
     FL_GUIDE_PLANE_UNROUNDED, // the flow's floats, bit by bit, if the source keeps them
-    FL_GUIDE_PLANE_CHANGES,   // FlChangeMap.square; not cropped, and of this frame alone
     FL_N_GUIDE_PLANES,
 } FlGuidePlane;
 

@@ -1,6 +1,5 @@
 #include "base/alloc.h"
 #include "base/error.h"
-#include "guides/change_map.h"
 #include "guides/displacement.h"
 #include "guides/distance.h"
 #include "guides/extent.h"
@@ -175,39 +174,6 @@ bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame)
     return sequence->frames[frame].rests;
 }
 
-/** Marks the squares taken by a frame that has the mask of the frame before. */
-static bool mark_taken(const FlGuideSequence *sequence, int frame, FlChangeMap *changes,
-                       GError **error)
-{
-    const FlRect box = sequence->frames[frame].box;
-    g_autofree uint8_t *shape = fl_alloc_unset(2 * fl_rect_pixels(box), 1, "coverages", error);
-    if (!shape || !fl_guide_sequence_shape(sequence, frame, shape, error))
-        return false;
-    const FlOutline outline = {.box = box, .coverage = shape};
-    fl_change_map_mark_taken(changes, &outline);
-    return true;
-}
-
-bool fl_guide_sequence_changes(const FlGuideSequence *sequence, int frame, uint8_t **square,
-                               GError **error)
-{
-    const FlGuideSource *source = &sequence->source;
-    const FlFrameRecord *record = &sequence->frames[frame];
-    const int holder = record->holder[FL_GUIDE_PLANE_CHANGES];
-    g_auto(FlChangeMap) changes = {0};
-    *square = NULL;
-    if (holder < 0 && !record->rests)
-        return true;
-    if (!fl_change_map_init(&changes, source->width, source->height, error) ||
-        !(record->rests
-              ? mark_taken(sequence, frame, &changes, error)
-              : fl_spill_get(sequence->spill, fl_guide_plane_block(holder, FL_GUIDE_PLANE_CHANGES),
-                             changes.square, fl_change_map_squares(&changes), error)))
-        return false;
-    *square = g_steal_pointer(&changes.square);
-    return true;
-}
-
 bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                               GError **error)
 {
@@ -330,6 +296,5 @@ void fl_guides_clear(FlGuides *guides)
     g_free(guides->bare);
     g_free(guides->motion);
     g_free(guides->turn);
-    fl_resting_parts_clear(&guides->resting);
     *guides = (FlGuides){0};
 }

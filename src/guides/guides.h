@@ -4,7 +4,6 @@
 
 #include "guides/distance.h"
 #include "guides/outline.h"
-#include "guides/resting_parts.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -21,14 +20,12 @@ typedef struct FlGuideParams {
 } FlGuideParams;
 
 /**
- * The guides of one frame, or of a part of the frame; the rest of the frame is at rest. All planes
- * are row-major, width * height, without padding.
+ * The guides of one frame. All planes are row-major, width * height, without padding.
  *
  * Directions are angles of 256 steps a turn, 0 along +x, 64 along +y (down), and are defined inside
  * the mask, still pixels included. Flow, angle and extents are 0 outside the mask.
  */
 typedef struct FlGuides {
-    int x, y; // position of the part in the frame; 0, 0 for a frame
     int width, height;
     bool disposable;  // not read after the engine, which may clear them before it paints
     bool blank;       // flow, extents and motion are 0 all over, as fl_guides_init() leaves them
@@ -44,19 +41,17 @@ typedef struct FlGuides {
     bool has_motion; // somewhere in the mask; else the two planes are undefined
     int32_t *motion; // interleaved, FL_MOTION_ONE a px, FL_MOTION_UNKNOWN; 2 * width * height
     int16_t *turn;   // the turn of the drawing, 65536 a turn; 0 where that is unknown
-    FlRestingParts resting; // of the frame: they are as in the one before; others may be as well
-    const struct FlGuides *whole; // of a part: the frame's, where it is inspected; else NULL
 } FlGuides;
 
-/** The pixel of the planes that lies at a place of the frame. */
+/** The pixel of the planes that lies at a place. */
 static inline size_t fl_guides_at(const FlGuides *guides, int x, int y)
 {
-    return (size_t)(y - guides->y) * (size_t)guides->width + (size_t)(x - guides->x);
+    return (size_t)y * (size_t)guides->width + (size_t)x;
 }
 
 static inline FlRect fl_guides_rect(const FlGuides *guides)
 {
-    return (FlRect){guides->x, guides->y, guides->width, guides->height};
+    return (FlRect){0, 0, guides->width, guides->height};
 }
 
 #define FL_MOTION_ONE 16384
@@ -100,8 +95,7 @@ FlGuideSequence *fl_guide_sequence_new(const FlGuideSource *source, const FlGuid
 
 void fl_guide_sequence_free(FlGuideSequence *sequence); // NULL is fine
 
-/** Fills `guides`, which the caller made with fl_guides_init() for the sequence's frame, or a part
- * of the frame. */
+/** Fills `guides`, which the caller made with fl_guides_init() in the size of the sequence. */
 bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                            GError **error);
 
@@ -116,14 +110,6 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
 /** True if a frame has the mask of the frame before and is free of motion, so that its guides need
  * not be read. */
 bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame);
-
-/**
- * The squares that change from the frame before, and the squares that either frame takes: see
- * fl_resting_parts_init(), to be freed. *square stays NULL without a frame before.
- * FL_ERROR_NO_MEMORY.
- */
-bool fl_guide_sequence_changes(const FlGuideSequence *sequence, int frame, uint8_t **square,
-                               GError **error);
 
 /**
  * The flow that directions were made from, before it was rounded for FlGuides: a source that

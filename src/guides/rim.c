@@ -80,11 +80,6 @@ static void part_clear(Part *part)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Part, part_clear)
 
-int fl_rim_reach(float border_px)
-{
-    return 2 * (int)(DETAIL_WIDE * border_px + 1.0f) + MARGIN_PX;
-}
-
 static int surround_radius(float border_px)
 {
     return MAX((int)(border_px + 0.5f), 1);
@@ -95,7 +90,7 @@ static int surround_radius(float border_px)
  * last pixels reach farther. */
 static FlRect part_box(const FlRimShape *shape, float border_px)
 {
-    const int disc = fl_rim_reach(border_px);
+    const int disc = 2 * (int)(DETAIL_WIDE * border_px + 1.0f) + MARGIN_PX;
     const int own = FL_WIDTH_OUTSIDE_PX + surround_radius(border_px);
     const int px = shape->together ? disc : MIN(own, disc);
     const FlRect box = fl_rect_of(shape->mask, shape->width, shape->height);

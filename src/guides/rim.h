@@ -19,9 +19,6 @@ typedef struct FlRimShape {
     const uint8_t *shown;    // coverage of all shapes of the frame; NULL: there are no others
 } FlRimShape;
 
-/** The distance from a pixel up to which its depth may depend on the shapes, px. */
-int fl_rim_reach(float border_px);
-
 /**
  * The depth of each pixel of the shape for the paint, px: below border_px, or equal to `distance`.
  *

@@ -176,7 +176,7 @@ static bool take_guides(FlLazy *lazy, FlGuides *guides, GError **error)
         return false;
     memcpy(mask, guides->mask, pixels);
     const FlRestRule rule = rest_rule(lazy);
-    fl_rest_shape(guides, &rule, shape, guides->width);
+    fl_rest_shape(guides, &rule, shape);
     if (guides->disposable)
         fl_guides_clear(guides);
     if (!blur_mask(lazy, mask, error) || (lazy->last.valid && !carry_past(lazy, error)))

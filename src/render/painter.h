@@ -37,7 +37,7 @@ typedef struct FlPainter {
     FlGuideSequence *sequence; // kept[0]
     FlKeptGuides kept[FL_KEPT_GUIDES];
     FlGuides guides; // of the picture, for the engine; empty: it was not painted
-    FlGuides shown;  // of the picture, for inspection: the whole region in px of the picture
+    FlGuides shown;  // the same for inspection, where the picture has another size; else empty
     void *paint;     // the state of plan->engine; NULL: all pictures are known
     FlReuse reuse;
     bool wants_view;   // result.view is filled, which takes the memory of a frame
@@ -104,7 +104,7 @@ bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], 
 /** Restores the state of a painter that was made the same way. FL_ERROR_CHANGED. */
 bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], GError **error);
 
-/* ---- the guides of its pictures: their sources, and the part of them that is needed --------- */
+/* ---- the guides of its pictures -------------------------------------------------------------- */
 
 /** The grid of the coarsest level, px of the guides. */
 int fl_guided_grid(const FlRegionPlan *region, FlRect page);
@@ -136,10 +136,7 @@ void fl_painter_close_fluid(FlPainter *painter);
  * shows. */
 bool fl_painter_rests(FlPainter *painter, int last);
 
-/**
- * Makes the guides of the painter's picture: painter->guides, of all or, where some parts rest, of
- * the part from which the engine paints. Then painter->shown has those of all, if they are wanted.
- */
+/** Makes the guides of the painter's picture: painter->guides. */
 bool fl_painter_make_guides(FlPainter *painter, GError **error);
 
 /** Brings the guides that are wanted to the size of the picture. */

@@ -321,20 +321,11 @@ static void halve_around(FlSurroundPlanes *around, int width, int height)
             fl_mask_halve(planes[k], width, height, planes[k]);
 }
 
-/* The rectangle of the page that the guides cover. */
-static FlRect guided_place(const FlPainter *painter, const FlGuides *guides)
-{
-    const FlRect whole = fl_painter_guided(painter);
-    const FlRect place = {whole.x + guides->x, whole.y + guides->y, guides->width, guides->height};
-    return halves(painter)
-               ? fl_rect_and(fl_rect_doubled(place, fl_painter_page(painter)), painter->result.rect)
-               : place;
-}
-
+/* The depth that the paint takes the region to have, in a frame with its shape. */
 static bool measure_depth(const FlPainter *painter, int frame, FlGuides *guides, GError **error)
 {
     const FlPaintedRegion *result = &painter->result;
-    const FlRect place = guided_place(painter, guides);
+    const FlRect place = result->rect;
     g_auto(FlSurroundPlanes) around = {0};
     const FlSurround *surround = painter->shapes->surround;
     if (surround && !fl_surround_get(surround, result->region, frame, place, &around, error))
@@ -359,36 +350,6 @@ static bool measure_depth(const FlPainter *painter, int frame, FlGuides *guides,
             add_depth(&closed, border, around.bordered, false, guides->depth, error));
 }
 
-/* The same of the whole region, of which guides take their part: among shapes that share edges a
- * pixel may lie deep, and a part that changes from frame to frame would make that jump. */
-static bool measure_among_others(const FlPainter *painter, int frame, FlGuides *guides,
-                                 GError **error)
-{
-    const FlRect rect = fl_painter_guided(painter), frame_rect = {0, 0, rect.width, rect.height};
-    g_auto(FlGuides) whole = {0};
-    if (!fl_guides_init_distance(&whole, rect.width, rect.height, error) ||
-        !fl_guide_sequence_distance(painter->sequence, painter->picture, &whole, error) ||
-        !measure_depth(painter, frame, &whole, error))
-        return false;
-    fl_rect_copy(whole.depth, frame_rect, guides->depth, fl_guides_rect(guides),
-                 sizeof *guides->depth);
-    return true;
-}
-
-/* The depth that the paint takes the region to have, unless the preset's guides lack a depth. */
-static bool make_depth(FlPainter *painter, FlGuides *guides, GError **error)
-{
-    const FlSurround *surround = painter->shapes->surround;
-    if (!fl_knows_depth(&painter->plan->settings.params))
-        return true;
-    const int frame = frame_of(painter, depth_picture(painter, painter->picture));
-    const FlRect rect = fl_painter_guided(painter);
-    const bool part = guides->width < rect.width || guides->height < rect.height;
-    return part && surround && fl_surround_joins(surround, painter->plan->region, frame)
-               ? measure_among_others(painter, frame, guides, error)
-               : measure_depth(painter, frame, guides, error);
-}
-
 /* The frames that paint takes to dry; 0: it does not show it. */
 static int dries(const FlPainter *painter)
 {
@@ -403,7 +364,7 @@ static int dries(const FlPainter *painter)
 static bool measure_bare(const FlPainter *painter, FlGuides *guides, GError **error)
 {
     const FlSurround *surround = painter->shapes->surround;
-    const FlRect place = guided_place(painter, guides), whole = fl_painter_page(painter);
+    const FlRect place = painter->result.rect, whole = fl_painter_page(painter);
     const FlRect part = fl_guides_rect(guides);
     const size_t n = fl_rect_pixels(part), scale = halves(painter) ? 2 : 1;
     const int side = MAX(whole.width, whole.height) / (int)scale;
@@ -433,39 +394,16 @@ static bool measure_bare(const FlPainter *painter, FlGuides *guides, GError **er
     return true;
 }
 
-/* The first picture whose motion paint may still dry after in the one in hand. */
-static int first_that_dries(const FlPainter *painter)
-{
-    return MAX(painter->picture - dries(painter), 1);
-}
-
+/* Returns: true if paint may still dry after its last motion. */
 static bool may_dry(const FlPainter *painter)
 {
     bool moved = false;
-    for (int f = first_that_dries(painter); f < painter->picture && !moved; f++)
+    for (int f = MAX(painter->picture - dries(painter), 1); f < painter->picture && !moved; f++)
         moved = !fl_guide_sequence_rests(painter->sequence, f);
     return moved;
 }
 
-/* Squares that were stirred not long ago may dry. */
-static bool stir_what_dries(const FlPainter *painter, uint8_t *square, GError **error)
-{
-    const FlRect rect = fl_painter_guided(painter);
-    const size_t n = (size_t)fl_rest_squares(rect.width) * (size_t)fl_rest_squares(rect.height);
-    for (int f = first_that_dries(painter); f < painter->picture; f++) {
-        g_autofree uint8_t *then = NULL;
-        if (fl_guide_sequence_rests(painter->sequence, f))
-            continue;
-        if (!fl_guide_sequence_changes(painter->sequence, f, &then, error))
-            return false;
-        for (size_t s = 0; s < n; s++)
-            if (square[s] && (!then || then[s] & FL_SQUARE_CHANGES))
-                square[s] |= FL_SQUARE_CHANGES;
-    }
-    return true;
-}
-
-/* ---- needed parts -------------------------------------------------------------------------- */
+/* ---- the guides of a picture ---------------------------------------------------------------- */
 
 bool fl_painter_rests(FlPainter *painter, int last)
 {
@@ -477,105 +415,22 @@ bool fl_painter_rests(FlPainter *painter, int last)
             depth_picture(painter, last) == depth_picture(painter, now));
 }
 
-/* Returns: true if the engine keeps parts at rest in the picture. */
-static bool keeps_parts(const FlPainter *painter)
-{
-    const FlParams *params = &painter->plan->settings.params;
-    return painter->follows && painter->plan->engine->rest && params->rest && params->boil == 0;
-}
-
-/* A square of the guides' frame stirs if a shape with which the region shares edges differs in px
- * around it: there its depth may change. */
-static void stir_around(uint8_t *square, FlRect guided, FlRect px)
-{
-    const int columns = fl_rest_squares(guided.width);
-    const FlRect around = fl_rect_and(px, (FlRect){0, 0, guided.width, guided.height});
-    for (int y = around.y / FL_REST_PX; y < fl_rest_squares(around.y + around.height); y++)
-        for (int x = around.x / FL_REST_PX; x < fl_rest_squares(around.x + around.width); x++)
-            if (square[y * columns + x])
-                square[y * columns + x] |= FL_SQUARE_CHANGES;
-}
-
-static bool stir_joins(const FlPainter *painter, uint8_t *square, GError **error)
-{
-    const int region = painter->plan->region, scale = fl_field_px(painter->plan->style->exemplar);
-    const int now = frame_of(painter, painter->picture);
-    const int before = frame_of(painter, painter->picture - 1);
-    const FlRect rect = painter->result.rect, guided = fl_painter_guided(painter);
-    const int reach = fl_rim_reach(painter->plan->style->exemplar->border_px) + FL_REST_PX;
-    if (joins_same(painter, now, before))
-        return true;
-    g_autofree uint8_t *differs = fl_alloc_unset(fl_rect_pixels(rect), 1, "a mask", error);
-    if (!differs ||
-        !fl_surround_differs(painter->shapes->surround, region, now, before, rect, differs, error))
-        return false;
-    for (int y = 0; y < guided.height; y += FL_REST_PX)
-        for (int x = 0; x < guided.width; x += FL_REST_PX) {
-            const FlRect px = {scale * x, scale * y, scale * FL_REST_PX, scale * FL_REST_PX};
-            const FlRect cell = fl_rect_and(px, (FlRect){0, 0, rect.width, rect.height});
-            if (fl_rect_within(differs, rect.width, cell).width > 0)
-                stir_around(
-                    square, guided,
-                    (FlRect){x - reach, y - reach, FL_REST_PX + 2 * reach, FL_REST_PX + 2 * reach});
-        }
-    return true;
-}
-
-/* Parts whose mask and motion say that they rest, and whose depth no other shape changes; the
- * engine looks at the others. moving: their rectangle, or that of all. */
-static bool find_resting(const FlPainter *painter, FlRestingParts *resting, FlRect *moving,
-                         GError **error)
-{
-    const FlRect rect = fl_painter_guided(painter);
-    *moving = (FlRect){0, 0, rect.width, rect.height};
-    g_autofree uint8_t *square = NULL;
-    if (!keeps_parts(painter))
-        return true;
-    if (!fl_guide_sequence_changes(painter->sequence, painter->picture, &square, error))
-        return false;
-    return !square ||
-           (stir_what_dries(painter, square, error) &&
-            (!fl_knows_depth(&painter->plan->settings.params) ||
-             stir_joins(painter, square, error)) &&
-            fl_resting_parts_init(resting, rect.width, rect.height, square, moving, error));
-}
-
-/* The part of the frame for which guides are needed, including all pixels on which these depend. */
-static FlRect needed_part(const FlPainter *painter, FlRect moving)
-{
-    const FlRect rect = fl_painter_guided(painter), whole = {0, 0, rect.width, rect.height};
-    const int patches = fl_guided_patches(painter->plan, fl_painter_page(painter));
-    const int rim = fl_rim_reach(painter->plan->style->exemplar->border_px);
-    return fl_rect_grown(moving, MAX(patches, rim), whole);
-}
-
-/* The depth takes as much scratch as the other planes, which are made later. */
-static bool fill_guides(FlPainter *painter, FlRect part, FlGuides *guides, GError **error)
-{
-    if (!fl_guides_init(guides, part.width, part.height, error))
-        return false;
-    guides->x = part.x, guides->y = part.y;
-    return fl_guide_sequence_distance(painter->sequence, painter->picture, guides, error) &&
-           make_depth(painter, guides, error) &&
-           fl_guide_sequence_planes(painter->sequence, painter->picture, guides, error) &&
-           (!dries(painter) || measure_bare(painter, guides, error));
-}
-
+/* The depth takes as much scratch as the other planes, which are made later. Guides of some presets
+ * lack a depth. */
 bool fl_painter_make_guides(FlPainter *painter, GError **error)
 {
-    g_auto(FlRestingParts) resting = {0};
-    FlGuides *guides = &painter->guides, *shown = &painter->shown;
-    const FlRect rect = fl_painter_guided(painter), whole = {0, 0, rect.width, rect.height};
-    FlRect moving;
-    if (!find_resting(painter, &resting, &moving, error) ||
-        (resting.keeps && painter->wants_guides && !fill_guides(painter, whole, shown, error)))
+    FlGuides *guides = &painter->guides;
+    const FlRect rect = fl_painter_guided(painter);
+    const int picture = painter->picture;
+    const bool deep = fl_knows_depth(&painter->plan->settings.params);
+    if (!fl_guides_init(guides, rect.width, rect.height, error))
         return false;
-    const FlRect part = resting.keeps ? needed_part(painter, moving) : whole;
-    const bool filled = fill_guides(painter, part, guides, error);
-    guides->disposable = resting.keeps || !painter->wants_guides;
-    guides->whole = shown->mask ? shown : NULL;
-    guides->resting = resting, resting = (FlRestingParts){0};
-    return filled;
+    guides->disposable = !painter->wants_guides;
+    return fl_guide_sequence_distance(painter->sequence, picture, guides, error) &&
+           (!deep || measure_depth(painter, frame_of(painter, depth_picture(painter, picture)),
+                                   guides, error)) &&
+           fl_guide_sequence_planes(painter->sequence, picture, guides, error) &&
+           (!dries(painter) || measure_bare(painter, guides, error));
 }
 
 /* ---- inspection ------------------------------------------------------------------------------ */
@@ -607,10 +462,9 @@ bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error)
 bool fl_painter_show_guides(FlPainter *painter, GError **error)
 {
     const FlRect rect = painter->result.rect;
-    FlGuides *all = painter->shown.mask ? &painter->shown : &painter->guides;
-    if (!halves(painter) || !painter->wants_guides || !all->mask)
+    if (!halves(painter) || !painter->wants_guides || !painter->guides.mask)
         return true;
-    g_auto(FlGuides) half = *all;
-    *all = (FlGuides){0};
+    g_auto(FlGuides) half = painter->guides;
+    painter->guides = (FlGuides){0};
     return fl_guides_double(&half, rect.width, rect.height, &painter->shown, error);
 }

@@ -89,12 +89,8 @@ void fl_reuse_begin(FlReuse *reuse, FlRect rect)
 static void add_guides(FlDigest *digest, const FlGuides *guides)
 {
     const FlRect part = fl_guides_rect(guides);
-    const FlRestingParts *resting = &guides->resting;
     const size_t n = fl_rect_pixels(part);
     fl_digest_add(digest, &part, sizeof part);
-    if (resting->keeps)
-        fl_digest_add(digest, resting->keeps,
-                      (size_t)resting->columns * (size_t)resting->rows * sizeof *resting->keeps);
     fl_digest_add(digest, guides->mask, n);
     fl_digest_add(digest, guides->distance, n * sizeof *guides->distance);
     fl_digest_add(digest, guides->depth, n * sizeof *guides->depth);

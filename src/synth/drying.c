@@ -56,8 +56,8 @@ static float bare_beside(const FlDrying *drying, size_t p, int x, int y, const f
     const FlGuides *guides = drying->guides;
     const float length = sqrtf(g[0] * g[0] + g[1] * g[1]);
     const float out = (guides->distance[p] + BESIDE * drying->unit_px) / MAX(length, 0.1f);
-    const int i = CLAMP(x - guides->x - (int)lrintf(out * g[0]), 0, guides->width - 1);
-    const int j = CLAMP(y - guides->y - (int)lrintf(out * g[1]), 0, guides->height - 1);
+    const int i = CLAMP(x - (int)lrintf(out * g[0]), 0, guides->width - 1);
+    const int j = CLAMP(y - (int)lrintf(out * g[1]), 0, guides->height - 1);
     return smoothstep(0.1f, 0.9f,
                       (float)guides->bare[(size_t)j * (size_t)guides->width + (size_t)i] / 255);
 }
@@ -68,8 +68,7 @@ static Place place_of(const FlDrying *drying, size_t p, int x, int y, bool first
     const FlGuides *guides = drying->guides;
     const float unit = drying->unit_px, *flow = guides->flow + 2 * p;
     float g[2];
-    fl_distance_gradient(guides->distance, guides->width, guides->height, x - guides->x,
-                         y - guides->y, g);
+    fl_distance_gradient(guides->distance, guides->width, guides->height, x, y, g);
     const float v = -(flow[0] * g[0] + flow[1] * g[1]) * bare_beside(drying, p, x, y, g);
     float speed = 0;
     if (first)

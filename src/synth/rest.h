@@ -1,4 +1,4 @@
-/* Regions at rest, and parts of them: what has not moved is painted as it was. */
+/* Regions at rest: what has not moved is painted as it was. */
 #ifndef FLUIDY_SYNTH_REST_H
 #define FLUIDY_SYNTH_REST_H
 
@@ -16,11 +16,10 @@ typedef struct FlRestRule {
 } FlRestRule;
 
 /**
- * Writes the plane by which a region at rest is recognised, in a frame that is `width` wide, for
- * the pixels of guides: the mask, and inside the mask the depth, which also depends on shapes that
- * move beside the region.
+ * Writes the plane by which a region at rest is recognised, as large as the guides: the mask, and
+ * inside the mask the depth, which also depends on shapes that move beside the region.
  */
-void fl_rest_shape(const FlGuides *guides, const FlRestRule *rule, uint8_t *shape, int width);
+void fl_rest_shape(const FlGuides *guides, const FlRestRule *rule, uint8_t *shape);
 
 /** The depth of a pixel inside; FL_REST_STEPS are FL_REST_DEEP borders. Undefined at the very
  * edge. */
@@ -39,27 +38,5 @@ static inline int fl_rest_depth(uint8_t shape)
  */
 bool fl_rests(const FlGuides *guides, const FlRestRule *rule, const uint8_t *last_shape,
               const uint8_t *last_wet);
-
-/**
- * Finds the parts at rest: those that guides know, and others by what fl_rests() asks of a region.
- * *moves: whether there are parts that do not rest. FL_ERROR_NO_MEMORY.
- */
-bool fl_rest_find(FlRestingParts *parts, const FlGuides *guides, const FlRestRule *rule,
-                  const FlSynthState *last, bool *moves, GError **error);
-
-/** The bounding box of what a shape, fl_rest_shape(), has inside the parts at rest. */
-FlRect fl_rest_box(const FlRestingParts *parts, const uint8_t *shape);
-
-/** Takes the parts at rest out of the mask of guides. */
-void fl_rest_hide(const FlRestingParts *parts, FlGuides *guides);
-
-/**
- * Gives the parts at rest what they were in the last frame: picture, shape and field. now->nnf
- * becomes a field of rect, which has all parts; it comes as one of now->rect, or empty. rgb: as
- * large as the last picture.
- * FL_ERROR_NO_MEMORY.
- */
-bool fl_rest_keep(const FlRestingParts *parts, const FlSynthState *last, FlRect rect,
-                  FlSynthState *now, uint8_t *rgb, GError **error);
 
 #endif

@@ -42,8 +42,6 @@ static void clear_frame(FlSynth *synth)
     for (int l = 0; l < synth->n_levels; l++)
         fl_nnf_clear(&synth->nnf[l]);
     fl_target_clear(&synth->target);
-    fl_resting_parts_clear(&synth->resting);
-    fl_synth_state_clear(&synth->past);
     fl_nnf_clear(&synth->shown);
     g_clear_pointer(&synth->shown_temporal, g_free);
     g_clear_pointer(&synth->shown_weight, g_free);
@@ -71,7 +69,7 @@ void fl_synth_measure(FlSynth *synth, bool energies)
     synth->wants_energies = energies;
 }
 
-/* The bounding box of what guides have of the mask, in the frame. */
+/* The bounding box of the mask. */
 static FlRect guided_box(const FlGuides *guides)
 {
     int x0 = guides->width, y0 = guides->height, x1 = -1, y1 = -1;
@@ -81,7 +79,7 @@ static FlRect guided_box(const FlGuides *guides)
                 x0 = MIN(x0, x), x1 = MAX(x1, x);
                 y0 = MIN(y0, y), y1 = MAX(y1, y);
             }
-    return fl_rect_between(guides->x + x0, guides->y + y0, guides->x + x1 + 1, guides->y + y1 + 1);
+    return fl_rect_between(x0, y0, x1 + 1, y1 + 1);
 }
 
 /* A bounding box, enlarged by the coarsest patches, on the coarsest grid. */
@@ -189,7 +187,7 @@ static bool take_shape(FlSynth *synth, const FlGuides *guides, GError **error)
     if (!(synth->last.mask = fl_alloc(pixels, 1, "a mask", error)))
         return false;
     const FlRestRule rule = rest_rule(synth);
-    fl_rest_shape(guides, &rule, synth->last.mask, synth->width);
+    fl_rest_shape(guides, &rule, synth->last.mask);
     return true;
 }
 
@@ -212,17 +210,6 @@ static bool take_guides(FlSynth *synth, FlGuides *guides, FlRect rect, GError **
     return true;
 }
 
-/* Parts at rest need the planes of the last frame until they have theirs. */
-static void forget_last(FlSynth *synth)
-{
-    if (synth->resting.keeps)
-        synth->past = synth->last;
-    else
-        fl_synth_state_clear(&synth->last);
-    synth->last.nnf = (FlNnf){0};
-    synth->last.mask = synth->last.wet = synth->last.rgb = NULL;
-}
-
 /* The last frame is large, and all that is needed of it is shifted: so that comes first. */
 static bool prepare(FlSynth *synth, FlGuides *guides, FlRect rect, FlCarried *carried,
                     FlFrameStats *stats, GError **error)
@@ -234,7 +221,7 @@ static bool prepare(FlSynth *synth, FlGuides *guides, FlRect rect, FlCarried *ca
     if ((continues && !carry_last(synth, guides, rect, carried, error)) ||
         !dry(synth, guides, rect, continues ? carried : NULL, &wet, &goes_on, error))
         return false;
-    forget_last(synth);
+    fl_synth_state_clear(&synth->last);
     synth->last.wet = g_steal_pointer(&wet), synth->last.dries = goes_on;
     stats->seconds_temporal = fl_lap(&time);
     if (!take_guides(synth, guides, rect, error))
@@ -336,77 +323,6 @@ static bool paint_rect(FlSynth *synth, FlGuides *guides, FlRect rect, uint8_t *r
     return true;
 }
 
-/* Parts have gone, and no other moves. */
-static bool paint_nothing(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, GError **error)
-{
-    forget_last(synth);
-    synth->last.dries = false;
-    if (!take_shape(synth, guides, error) || !fl_synth_state_room(&synth->last, error))
-        return false;
-    fill_paper(synth, rgb);
-    synth->last.rect = synth->target.rect = (FlRect){0};
-    synth->view = (FlSynthView){.nnf = &synth->last.nnf};
-    return true;
-}
-
-/* Finds the parts at rest. *moves: true if there are parts that do not rest. */
-static bool find_resting(const FlSynth *synth, const FlGuides *guides, FlRestingParts *resting,
-                         bool *moves, GError **error)
-{
-    const FlRestRule rule = rest_rule(synth);
-    if (may_rest(synth, synth->last.frame))
-        return fl_rest_find(resting, guides, &rule, &synth->last, moves, error);
-    g_assert(!guides->resting.keeps);
-    *moves = true;
-    return true;
-}
-
-/* The bounding box of all parts. */
-static FlRect whole_box(const FlSynth *synth, const FlGuides *guides)
-{
-    const FlRect box = guided_box(guides);
-    return synth->resting.keeps ? fl_rect_or(box, fl_rest_box(&synth->resting, synth->last.mask))
-                                : box;
-}
-
-/* Paints the parts that do not rest into a picture and a field of `all`, beside the others. */
-static bool paint_beside(FlSynth *synth, FlGuides *guides, FlRect all, uint8_t *rgb,
-                         FlFrameStats *stats, GError **error)
-{
-    const size_t pixels = fl_rect_pixels(fl_guides_rect(guides));
-    g_autofree uint8_t *mask = fl_alloc_unset(pixels, 1, "a mask", error);
-    if (!mask)
-        return false;
-    memcpy(mask, guides->mask, pixels);
-    fl_rest_hide(&synth->resting, guides);
-    const FlRect box = guided_box(guides);
-    if (!(box.width > 0 ? paint_rect(synth, guides, working_rect(synth, box), rgb, stats, error)
-                        : paint_nothing(synth, guides, rgb, error)))
-        return false;
-    if (guides->mask)
-        memcpy(guides->mask, mask, pixels);
-    return fl_rest_keep(&synth->resting, &synth->past, all, &synth->last, rgb, error);
-}
-
-/* For a view: the target of all parts. Those at rest have no T_temp. */
-static bool show_all(FlSynth *synth, const FlGuides *guides, FlRect rect, GError **error)
-{
-    g_auto(FlTarget) moving = synth->target;
-    synth->target = (FlTarget){0};
-    if (!fl_target_init(&synth->target, guides->whole ? guides->whole : guides, synth->params, rect,
-                        synth->n_levels, synth->exemplar, error) ||
-        !fl_target_add_temporal(&synth->target, error))
-        return false;
-    const FlTargetLevel *from = &moving.level[0], *to = &synth->target.level[0];
-    fl_rect_copy(from->temporal, moving.rect, to->temporal, rect, 3 * sizeof *to->temporal);
-    fl_rect_copy(from->temporal_weight, moving.rect, to->temporal_weight, rect,
-                 sizeof *to->temporal_weight);
-    synth->view.rect = rect;
-    if (synth->view.temporal)
-        synth->view.temporal = to->temporal, synth->view.temporal_weight = to->temporal_weight;
-    return true;
-}
-
 /* Paints the frame; shows: its view is needed. */
 static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats, bool shows,
                   GError **error)
@@ -416,11 +332,9 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
         fl_boil_step(synth->params->boil, synth->last.frame, synth->exemplar->level[0].window);
     if (!unpack_last(synth, error))
         return false;
-    g_auto(FlRestingParts) resting = {0};
-    bool moves;
-    if (!find_resting(synth, guides, &resting, &moves, error))
-        return false;
-    if (!moves) {
+    const FlRestRule rule = rest_rule(synth);
+    if (may_rest(synth, synth->last.frame) &&
+        fl_rests(guides, &rule, synth->last.mask, synth->last.wet)) {
         memcpy(rgb, synth->last.rgb, fl_synth_state_painted(&synth->last));
         synth->view = view_at_rest(synth);
         return true;
@@ -429,8 +343,7 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
     forget_packed(synth);
     synth->moves = guides->has_motion && synth->params->carry > 0;
     fl_cost_scale_init(&synth->scale, synth->params);
-    synth->resting = resting, resting = (FlRestingParts){0};
-    const FlRect box = whole_box(synth, guides), all = working_rect(synth, box);
+    const FlRect box = guided_box(guides);
     if (box.width == 0) {
         fill_paper(synth, rgb);
         synth->last.valid = false;
@@ -439,11 +352,9 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
     const bool disposable = guides->disposable;
     guides->disposable &= !shows;
     synth->wants_view = shows;
-    if (!(synth->resting.keeps ? paint_beside(synth, guides, all, rgb, stats, error)
-                               : paint_rect(synth, guides, all, rgb, stats, error)))
-        return false;
+    const bool done = paint_rect(synth, guides, working_rect(synth, box), rgb, stats, error);
     guides->disposable = disposable;
-    return !shows || !synth->resting.keeps || show_all(synth, guides, all, error);
+    return done;
 }
 
 /* A plane of a view of `channels` in the size of the picture, with room in *shown. */

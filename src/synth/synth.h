@@ -32,12 +32,10 @@ void fl_synth_measure(FlSynth *synth, bool energies);
  * Paints the next frame. rgb: width * height * 3 sRGB, written in the mask and a rim of 2 px, the
  * style's paper elsewhere. An empty mask makes the next frame a first frame again.
  *
- * Guides are of the frame, or of a part of it with all parts of the mask that may not rest, grown
- * by the patches of the coarsest level; guides->resting then has the others. Guides that are
- * disposable are cleared as soon as they are used. stats and view may be NULL; without a view only
- * the field and the picture of the frame are kept. With params->rest, a still region keeps its last
- * picture until params->boil is due; stats are then empty. So do still parts of one that lie apart
- * from what moves; stats and T_temp are then of the other parts.
+ * Guides are of the frame. Guides that are disposable are cleared as soon as they are used. stats
+ * and view may be NULL; without a view only the field and the picture of the frame are kept. With
+ * params->rest, a still region keeps its last picture until params->boil is due; stats are then
+ * empty.
  */
 bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error);

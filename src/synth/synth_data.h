@@ -26,10 +26,8 @@ struct FlSynth {
     uint8_t *tone;   // of the frame in hand, of its rect: fl_drying_step(); NULL: it is 1
     FlTarget target; // of the frame in hand; kept until the next for FlSynthView
     FlNnf nnf[FL_MAX_LEVELS];
-    FlRestingParts resting; // of the frame in hand
-    FlSynthState past;      // in a frame with such parts: the planes of the last one
-    FlSynthView view;       // of the last frame that was painted, where it is needed
-    FlNnf shown; // its field, T_temp and m in the size of the picture, where that is another
+    FlSynthView view; // of the last frame that was painted, where it is needed
+    FlNnf shown;      // its field, T_temp and m in the size of the picture, where that is another
     float *shown_temporal, *shown_weight;
 };
 
