@@ -18,8 +18,9 @@ typedef struct Scene {
     FlLaid laid;
     FlWetShape shape;
     FlWetDials dials;
-    float spin; // of the disk around its middle, radians a frame
-    float pace; // of the disk in the frame before; 0: not known
+    float spin;    // of the disk around its middle, radians a frame
+    float pace;    // of the disk in the frame before; 0: not known
+    float receded; // of its edge until then
     GArray *fronts, *stains, *below;
 } Scene;
 
@@ -91,7 +92,7 @@ static void mark(Scene *scene, float x0, float x1, float grown)
     was.now = scene->before;
     g_assert_true(fl_moving_edge_look(&before, &was, NULL));
     for (int i = 0; i < before.n; i++)
-        before.point[i].pace = scene->pace;
+        before.point[i].pace = scene->pace, before.point[i].receded = scene->receded;
     before.n = scene->pace > 0 ? before.n : 0;
     scene->shape.distance_before = before.distance;
     g_assert_true(fl_distance(scene->ahead, SIDE, SIDE, scene->beyond, NULL));
@@ -195,6 +196,7 @@ static void test_spin(void)
 static void test_sides(void)
 {
     Scene *scene = scene_new();
+    scene->pace = 24, scene->receded = 48;
     mark(scene, 60, 84, 0);
     for (guint i = 0; i < scene->stains->len; i++) {
         const FlStainMark *stain = &g_array_index(scene->stains, FlStainMark, i);
@@ -203,6 +205,19 @@ static void test_sides(void)
             g_assert_cmpfloat(stain->depth, <, 6);
         if (across < RADIUS - 20)
             g_assert_cmpfloat(stain->depth, >, 7);
+    }
+    scene_free(scene);
+}
+
+static void test_start(void)
+{
+    Scene *scene = scene_new();
+    mark(scene, 60, 84, 0);
+    for (guint i = 0; i < scene->stains->len; i++) {
+        const FlStainMark *stain = &g_array_index(scene->stains, FlStainMark, i);
+        const float way = (float)(stain->at % SIDE) - (60 - RADIUS);
+        if (abs(stain->at / SIDE - 100) < RADIUS / 4)
+            g_assert_cmpfloat(stain->depth, <, MAX(way, 0) + 2);
     }
     scene_free(scene);
 }
@@ -242,7 +257,7 @@ static void test_jump(void)
         memset(scene->motion, 0, sizeof scene->motion);
         g_assert_true(fl_moving_edge_look(&edge, &scene->shape, NULL));
         for (int i = 0; i < edge.n; i++)
-            edge.point[i].speed = -20, edge.point[i].kept = leaves_none ? 0 : 1;
+            edge.point[i].receding = 20, edge.point[i].kept = leaves_none ? 0 : 1;
         fl_marks_lose_fronts(&scene->shape, &edge, fronts, lost);
         if (jumps || leaves_none)
             g_assert_cmpuint(lost->len, >, fronts->len / 2);
@@ -369,19 +384,32 @@ static void test_turned(void)
     scene_free(scene);
 }
 
-static void test_taken_up(void)
+/* The share of a stain that stays where paint passes so far from its own sides. */
+static float share_left(float depth)
 {
     Scene *scene = scene_new();
     mark(scene, 80, 86, 0);
+    for (guint i = 0; i < scene->stains->len; i++)
+        g_array_index(scene->stains, FlStainMark, i).depth = 14;
     fl_wet_sheet_stain(&scene->sheet, &plain, scene->stains);
-    g_assert_cmpfloat(stain_of(scene), >, 20);
+    const float before = stain_of(scene);
+    g_assert_cmpfloat(before, >, 20);
     for (guint i = 0; i < scene->stains->len; i++) {
         FlStainMark *mark = &g_array_index(scene->stains, FlStainMark, i);
-        mark->charge = 0, mark->lost = 1, mark->depth = 5;
+        mark->charge = 0, mark->lost = 1, mark->depth = depth;
     }
     fl_wet_sheet_stain(&scene->sheet, &plain, scene->stains);
-    g_assert_cmpfloat(stain_of(scene), ==, 0);
+    const float share = stain_of(scene) / before;
     scene_free(scene);
+    return share;
+}
+
+static void test_taken_up(void)
+{
+    const float sides = share_left(6);
+    g_assert_cmpfloat(share_left(14), ==, 0);
+    g_assert_cmpfloat(sides, >, 0.2f);
+    g_assert_cmpfloat(sides, <, 0.9f);
 }
 
 /* The darkness of a stain all of which is so far from its sides. */
@@ -412,6 +440,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/a-turn-after-quick-motion-leaves-less", test_turn);
     g_test_add_func("/wet/a-disk-that-spins-passes-straight-on", test_spin);
     g_test_add_func("/wet/stains-know-how-far-their-sides-are", test_sides);
+    g_test_add_func("/wet/stains-break-up-where-they-begin", test_start);
     g_test_add_func("/wet/paint-that-passes-takes-up-a-stain", test_taken_up);
     g_test_add_func("/wet/a-stain-breaks-up-towards-its-sides", test_frayed);
     g_test_add_func("/wet/what-rests-marks-nothing", test_rest);

@@ -8,12 +8,12 @@
 /** Of fl_noise(). */
 #define DEVIATION 0.5f
 
-enum { FINE, COARSE, N_SIZES, BIG = 100, HOLLOW, SPOT };
+enum { FINE, MIDDLE, COARSE, N_SIZES, BIG = 100, HOLLOW, SPOT };
 
 /** Lattices of the fibres along and across them, and their weights, px of the page. */
 static const struct {
     float along, across, weight;
-} sizes[N_SIZES] = {{30, 6.5f, 0.45f}, {50, 17, 0.89f}};
+} sizes[N_SIZES] = {{24, 5, 0.25f}, {40, 11, 0.55f}, {60, 26, 0.8f}};
 
 #define DIRECTIONS 6
 
@@ -23,20 +23,24 @@ static const float sine[DIRECTIONS] = {0, 0.5f, 0.8660254f, 1, 0.8660254f, 0.5f}
 static const float cosine2[DIRECTIONS] = {1, 0.5f, -0.5f, -1, -0.5f, 0.5f};
 static const float sine2[DIRECTIONS] = {0, 0.8660254f, 0.8660254f, 0, -0.8660254f, -0.8660254f};
 
-static float noise(const FlFibres *fibres, int which, float x, float y)
+/** Noise of deviation 1, whose lattice lies in a direction. */
+static float noise(const FlFibres *fibres, int which, int direction, float x, float y,
+                   float size_along, float size_across)
 {
-    return fl_noise(fl_key(fibres->seed, (uint64_t)which), x, y) / DEVIATION;
+    const float along = x * cosine[direction] + y * sine[direction];
+    const float across = y * cosine[direction] - x * sine[direction];
+    return fl_noise(fl_key(fibres->seed, (uint64_t)which), along / size_along,
+                    across / size_across) /
+           DEVIATION;
 }
 
 /** The fibres that lie in one direction: of deviation 1. */
 static float lying(const FlFibres *fibres, int direction, float x, float y)
 {
-    const float along = x * cosine[direction] + y * sine[direction];
-    const float across = y * cosine[direction] - x * sine[direction];
     float sum = 0;
     for (int s = 0; s < N_SIZES; s++)
-        sum += sizes[s].weight * noise(fibres, N_SIZES * direction + s, along / sizes[s].along,
-                                       across / sizes[s].across);
+        sum += sizes[s].weight * noise(fibres, N_SIZES * direction + s, direction, x, y,
+                                       sizes[s].along, sizes[s].across);
     return sum;
 }
 
@@ -51,18 +55,19 @@ float fl_fibres_run(const FlFibres *fibres, float x, float y, float dx, float dy
         sum += near * near * lying(fibres, d, x, y);
         squares += near * near * near * near;
     }
-    const float big = noise(fibres, BIG, x / 30, y / 30);
-    return fl_even(0.85f * sum / sqrtf(squares) + 0.5f * big);
+    const float big = noise(fibres, BIG, 1, x, y, 40, 40);
+    return fl_even(0.8f * sum / sqrtf(squares) + 0.6f * big);
 }
 
 float fl_fibres_hollow(const FlFibres *fibres, float x, float y)
 {
-    const float fine = noise(fibres, HOLLOW, x / 2.6f, y / 2.6f);
-    return fl_even((fine + 0.9f * noise(fibres, HOLLOW + 10, x / 5.8f, y / 5.8f)) / 1.35f);
+    const float fine = noise(fibres, HOLLOW, 1, x, y, 2.4f, 2.4f);
+    const float wide = 0.8f * noise(fibres, HOLLOW + 20, 2, x, y, 14, 14);
+    return fl_even((fine + noise(fibres, HOLLOW + 10, 4, x, y, 5.2f, 5.2f) + wide) / 1.6f);
 }
 
 float fl_fibres_spot(const FlFibres *fibres, float x, float y)
 {
-    const float fine = noise(fibres, SPOT, x / 7, y / 7);
-    return fl_even((fine + 0.8f * noise(fibres, SPOT + 10, x / 16, y / 16)) / 1.28f);
+    const float fine = noise(fibres, SPOT, 2, x, y, 8, 8);
+    return fl_even((fine + noise(fibres, SPOT + 10, 5, x, y, 24, 24)) / 1.41f);
 }

@@ -88,9 +88,9 @@ static bool find_mark(const Front *front, const FlWetSheet *sheet, size_t p, flo
     const float run = fl_fibres_run(&sheet->fibres, (float)at.x / px, (float)at.y / px,
                                     (float)(dx / length), (float)(dy / length));
     const float fingers = style->fingers * fl_ease(1.5f * px, 7 * px, f);
-    const float reach =
-        1.25f * f * (1 - fingers + 2.2f * fingers * run * sqrtf(sqrtf(run))) - ahead + 2 * px;
-    const float over = front->dials->overrun * px * (0.4f + 1.2f * run) *
+    const float finger = 2.8f * run * run; // a few are long, many short
+    const float reach = 1.25f * f * (1 - fingers + fingers * finger) - ahead + 2 * px;
+    const float over = front->dials->overrun * px * (0.4f + 0.7f * finger) *
                        MIN(1, point->half_width / (10 * px)) * fl_ease(1.5f * px, 9 * px, f) *
                        passing_by(front->shape, point);
     const float path = (over + 0.8f * px + inset - beyond) / (0.65f * over + 0.8f * px);

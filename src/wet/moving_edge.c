@@ -394,6 +394,8 @@ static void find_point(const FlWetShape *shape, const FlMovingEdge *before, bool
     find_kept(shape, was ? was->pace : 0, point);
     point->kept_before = was ? was->kept : point->kept;
     memcpy(point->ink_before, was ? was->ink : point->ink, sizeof point->ink);
+    point->receding = MAX(-point->speed, 0) * shape->frames;
+    point->receded = MAX((was ? was->receded : 0) - point->speed * shape->frames, 0);
     point->speed = 0.55f * point->speed + 0.45f * speed;
 }
 

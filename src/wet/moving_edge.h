@@ -33,6 +33,7 @@ typedef struct FlEdgePoint {
     float u, v;                  // motion since the frame before against the paper, cells
     float speed;                 // of the contour along its normal against the paper, cells a frame
     float pace;                  // its greatest speed of late, cells a frame
+    float receding, receded;     // its way back since the frame before, and since it last advanced
     float half_width;            // of the shape, cells
     float kept, kept_before;     // share of its paint that the paper keeps, and a frame earlier
     float ink[3], ink_before[3]; // absorbance of the paint inside

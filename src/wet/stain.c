@@ -106,7 +106,8 @@ static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, floa
     if (cover.most < -1.2f || cover.most < now + 0.01f)
         return;
     const float far = MAX(-now, 0) / (moved + 3 * shape->px);
-    const float depth = MAX(cover.most, depth_between_sides(pixel));
+    const float receded = point->receded - point->receding * (1 - cover.last);
+    const float depth = MIN(MAX(cover.most, depth_between_sides(pixel)), receded);
     const float kept =
         (1 - fl_ease(1.3f, 2, far)) * between(point->kept_before, point->kept, cover.last);
     const float sides = fl_ease(0, 0.25f, kept) * (1 - away_from_sides(shape, depth));
@@ -123,7 +124,7 @@ static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, floa
 /** 0..1: an edge recedes. */
 static float recedes(const FlWetShape *shape, const FlEdgePoint *point)
 {
-    return 1 - fl_fall(MAX(-point->speed, 0) / (2 * shape->px));
+    return 1 - fl_fall(point->receding / (2 * shape->frames * shape->px));
 }
 
 /** The stain begins below the rim of a receding edge, so that no bare paper shows there. */

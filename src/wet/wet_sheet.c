@@ -8,7 +8,7 @@
 #define FRONT_FRAMES 2.2f // in which a front dries
 #define GONE_FRAMES 36    // after which a stain is gone
 #define STRENGTH 0.9f     // of absorbances on the paper
-#define FRAYED_PX 10      // px of the page to which the sides of a stain break up, at most
+#define FRAYED_PX 14      // px of the page to which the sides of a stain break up, at most
 
 /** The grain of the paper, once for the film: the pictures have the sheet's. */
 static void find_grain(FlWetSheet *sheet)
@@ -248,24 +248,44 @@ static void add_ink(FlWetCell *cell, float more, const float ink[3], float granu
     cell->granulation = between(cell->granulation, granulation, share);
 }
 
-/** Paint that passes takes up the stain in its way. A cell has one stain, the stronger: the weaker
- * leaves no trace. */
+/** The depth to which a stain breaks up from its sides, cells. */
+static float frayed_to(const FlWetSheet *sheet, float hollow, float spot)
+{
+    return FRAYED_PX * sheet->px * (1 - 0.3f * hollow - 0.7f * spot);
+}
+
+/** The share of an earlier stain that paint leaves which passes: this breaks up towards its sides,
+ * and the stain is seen between its pieces. */
+static float seen_between(const FlWetSheet *sheet, const FlStainMark *mark, FlPaperGrains grain,
+                          const FlWetCell *cell)
+{
+    const float fray = frayed_to(sheet, share_of(grain.hollow), share_of(grain.spot));
+    return fl_ease(-sheet->px, sheet->px, fray - mark->depth) *
+           fl_ease(0, 2 * sheet->px, cell->depth - mark->depth);
+}
+
+/** Paint that passes takes up the stain in its way. A cell has one stain, the stronger. */
 static void stain_cell(const FlWetSheet *sheet, const FlFrontStyle *style, const FlStainMark *mark,
                        FlWetCell *cell)
 {
-    const float hollow = share_of(fl_wet_sheet_grain(sheet, mark->at).hollow);
-    float old = cell->depth > 0 ? cell->stain * left_of(sheet, cell->age, hollow) : 0;
+    const FlPaperGrains grain = fl_wet_sheet_grain(sheet, mark->at);
+    const float hollow = share_of(grain.hollow);
+    const float seen = mark->depth > 0 ? seen_between(sheet, mark, grain, cell) : 1;
     const float stain = style->stain * mark->charge, film = style->film * mark->charge;
-    const float stays = 1 - mark->lost;
-    cell->front *= stays;
-    if (mark->depth > 0)
-        cell->stain *= stays, cell->film *= stays, old *= stays;
-    if (stain * left_of(sheet, mark->age, hollow) <= old || (mark->depth <= 0 && old > 0))
+    const float stays = 1 - mark->lost * (1 - seen);
+    cell->front *= 1 - mark->lost;
+    cell->stain *= stays, cell->film *= stays;
+    const float old = cell->depth > 0 ? cell->stain * left_of(sheet, cell->age, hollow) : 0;
+    const float new = stain *left_of(sheet, mark->age, hollow);
+    const float own =
+        (1 - seen * MIN(4 * old / MAX(new, 1e-9f), 1)) * fl_ease(0.6f, 1, new / MAX(old, 1e-9f));
+    if (own <= 0 || (mark->depth <= 0 && old > 0))
         return;
-    cell->stain = cell->film = 0;
-    add_ink(cell, stain + film, mark->ink, style->granulation);
-    cell->stain = stain, cell->film = film;
-    cell->age = mark->age, cell->depth = mark->depth;
+    cell->stain *= 1 - own, cell->film *= 1 - own;
+    add_ink(cell, own * (stain + film), mark->ink, style->granulation);
+    cell->stain += own * stain, cell->film += own * film;
+    cell->age = between(cell->age, mark->age, own);
+    cell->depth = between(cell->depth, mark->depth, own);
 }
 
 void fl_wet_sheet_stain(FlWetSheet *sheet, const FlFrontStyle *style, const GArray *stains)
@@ -408,8 +428,8 @@ static void read_grain(const FlWetSheet *sheet, int x, int y, FlColumns columns,
 static void shine_through(const FlWetSheet *sheet, FlColumns columns, const LayerRows *rows)
 {
     float *const *m = rows->px;
-    const float cell_px = (float)sheet->cell_px, fray = FRAYED_PX * sheet->px;
-    const float soft = 0.3f * fray * cell_px;
+    const float cell_px = (float)sheet->cell_px;
+    const float soft = 0.3f * FRAYED_PX * sheet->px * cell_px;
 #pragma omp simd
     for (int x = columns.first; x < columns.last; x++) {
         const float hollow = rows->hollow[x], spot = rows->spot[x];
@@ -421,12 +441,12 @@ static void shine_through(const FlWetSheet *sheet, FlColumns columns, const Laye
         const float tip = m[LINE][x] * fl_bell(1.3f * (m[EDGE][x] - 0.6f));
         const float front =
             MIN(fl_ease(0, 1, m[EDGE][x]) * (m[FRONT][x] * grain + tip) / fronts, 1);
-        const float late = 0.5f * (hollow + spot);
+        const float inside = m[DEPTH][x] / stains / (FRAYED_PX * sheet->px);
+        const float late = 0.3f * (hollow + spot) + 0.4f * inside;
         const float film = m[FILM][x] * fl_ease(0, 0.9f, (1.2f + 3.6f * late - age) / 1.6f);
         const float coarse = CLAMP(1 - 0.55f * g + 1.1f * g * (hollow - 0.5f), 0.1f, 1.4f);
         const float pigment = m[STAIN][x] * left_of(sheet, age, hollow) * coarse;
-        const float frayed =
-            fray * (1 - 0.4f * hollow - 0.6f * spot) * (1 - MIN(3 * m[FRONT][x], 1));
+        const float frayed = frayed_to(sheet, hollow, spot) * (1 - MIN(3 * m[FRONT][x], 1));
         const float sides = fl_ease(-0.5f, soft, (m[DEPTH][x] - frayed) * cell_px) / stains;
         const float stain = MIN(sides * (film + pigment - film * pigment / stains), 1);
         const float dense = STRENGTH * (1 - (1 - stain) * (1 - front)) / paint;
