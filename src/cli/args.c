@@ -92,6 +92,29 @@ static gboolean read_limit(const char *name, const char *value, gpointer data, G
     return fl_limit_set(value, error);
 }
 
+/* --map DIAL=PATTERN sets map-DIAL. */
+static gboolean read_map(const char *name, const char *value, gpointer data, GError **error)
+{
+    FlArgs *args = data;
+    const char *equals = strchr(value, '=');
+    g_autofree char *dial = equals ? g_strndup(value, (gsize)(equals - value)) : NULL;
+    g_autofree char *key = g_strconcat(FL_MAP_OPTION, dial, NULL);
+    const FlOption *option = equals ? fl_option_find(FL_SCOPE_REGION, key) : NULL;
+    if (option && equals[1]) {
+        const FlSetting setting = {.name = option->name, .value = keep(args, equals + 1)};
+        g_array_append_val(args->settings, setting);
+        return TRUE;
+    }
+    const bool scale = dial && strstr(dial, "scale");
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                scale ? "%s: “%s”: the exemplar has one size in a region; maps are of carry, "
+                        "strength, wash, calm, front and stain"
+                      : "%s: “%s” is not a dial that has maps, = and pictures; expected one such "
+                        "as front=front_%%04d.png, of carry, strength, wash, calm, front or stain",
+                name, value);
+    return FALSE;
+}
+
 /* --preview N: drafts of a frame and its neighbours, which the next preview may replace. */
 static gboolean read_preview(const char *name, const char *value, gpointer data, GError **error)
 {

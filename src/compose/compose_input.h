@@ -30,6 +30,7 @@ typedef struct FlComposeInput {
     FlDirections directions;    // of the hand
     uint64_t seed;              // of what is uneven
     int width, height;          // of the frame, px
+    int number;                 // of the frame
     float paper_px;             // of the frame per px of the sheet of paper
     bool layers_apart;          // layers are stored as well, to be put on something else
     bool linear;                // blend in linear light

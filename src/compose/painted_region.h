@@ -4,6 +4,7 @@
 
 #include "compose/ink.h"
 #include "drawing/drawing.h"
+#include "io/control_map.h"
 #include "params/region_settings.h"
 #include "style/style_folder.h"
 #include "synth/synth.h"
@@ -45,6 +46,7 @@ typedef struct FlPaintedRegion {
     const char *name;                 // borrowed, as settings and style are
     const FlRegionSettings *settings; // settings of its painting
     const FlStyleInstance *style;     // with what
+    FlControlMap *const *map;         // by FlMapped; NULL: it has none
     float share;                      // of its style in the region in this frame, 0..1
     bool more;                        // the next one of the list is the region in its next style
     int width, height;                // of the drawing as it is painted, px

@@ -29,7 +29,8 @@ typedef struct FlWashField {
     float *side;   // -1 light side .. 1 shadow side
     float *around; // the mask, spread as far as the shapes are large
     float *room[FL_WASH_ROOMS];
-    float *turned; // three planes: scratch of blurs
+    float *map[FL_MAPS]; // shares of dials at each point, from control maps; NULL: all of them
+    float *turned;       // three planes: scratch of blurs
 } FlWashField;
 
 static inline size_t fl_wash_points(const FlWash *wash)

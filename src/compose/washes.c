@@ -10,6 +10,26 @@
 
 /* ---- a wash ---------------------------------------------------------------------------------- */
 
+static bool read_maps(FlWashField *field, GError **error)
+{
+    static const FlMapped mapped[] = {FL_MAP_WASH, FL_MAP_CALM};
+    const FlComposeInput *input = field->input;
+    const FlWash *wash = field->wash;
+    const FlRect points = {wash->box.x / wash->step, wash->box.y / wash->step, wash->width,
+                           wash->height};
+    bool read = true;
+    for (size_t k = 0; k < G_N_ELEMENTS(mapped) && read && wash->painted->map; k++)
+        read = fl_control_map_make(
+            wash->painted->map[mapped[k]], input->number, points, (double)input->width / wash->step,
+            (double)input->height / wash->step, &field->map[mapped[k]], error);
+    return read;
+}
+
+static float share_at(const FlWashField *field, FlMapped dial, size_t point)
+{
+    return field->map[dial] ? field->map[dial][point] : 1;
+}
+
 /* 1 where more paint is darker; -1 where it is lighter, as of light paint on dark paper. */
 static float light_of(const FlWashField *field)
 {
@@ -27,7 +47,6 @@ static void put_together(const FlWashField *field)
     const float lit = light_of(field);
     const float uneven = .12f + .1f * fl_smooth(field->size / 200 - 1); // puddles need room
     const float quiet = 1 - .45f * fl_smooth(field->size / 300 - 1); // a ground is laid with care
-    const float calm = wash->style.calm * MIN(wash->style.wash, 1);
     fl_field_find_pools(field, pool);
     fl_field_find_heart(field, heart);
     fl_field_find_breadth(field, breadth);
@@ -41,15 +60,17 @@ static void put_together(const FlWashField *field)
         hue[i] = wander / sqrtf(1 + wander * wander / 2.25f); // browns would turn red and green
     }
     for (size_t i = 0; i < n; i++) {
-        breadth[i] *= quiet;
+        const float washed = share_at(field, FL_MAP_WASH, i);
+        share_of_hue[i] = .3f + .7f * (quiet * breadth[i]);
+        breadth[i] *= quiet * washed;
         const float lines = breadth[i] * wash->plane[FL_WASH_LINES][i];
         tone[i] *= breadth[i];
-        share_of_hue[i] = .3f + .7f * breadth[i];
         hue[i] *= share_of_hue[i];
         wash->plane[FL_WASH_LINES][i] = lines;
         wash->plane[FL_WASH_TIDES][i] *= lines;
         wash->plane[FL_WASH_BLOOMS][i] *= lines;
-        wash->plane[FL_WASH_CALM][i] *= calm;
+        wash->plane[FL_WASH_CALM][i] *=
+            wash->style.calm * MIN(washed * wash->style.wash, 1) * share_at(field, FL_MAP_CALM, i);
     }
     fl_wash_find_tones(wash, tones, hues);
     fl_field_centre(field, tones, breadth, tone);
@@ -136,7 +157,7 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
     const float angle = (float)(field.wash->painted->settings->light * G_PI / 180);
     field.light[0] = cosf(angle), field.light[1] = sinf(angle);
     find_across(&field);
-    const bool made = fl_field_alloc(&field, error);
+    const bool made = fl_field_alloc(&field, error) && read_maps(&field, error);
     if (made) {
         fl_field_fill_masks(&field, washes, w, draws);
         fl_field_divide(&field);
@@ -144,6 +165,8 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
         fl_field_fill_noise(&field);
         put_together(&field);
     }
+    for (int k = 0; k < FL_MAPS; k++)
+        free(field.map[k]);
     fl_field_clear(&field);
     return made;
 }
@@ -187,6 +210,11 @@ static FlWashStyle style_of_region(const FlComposeInput *input, int first)
     return mean;
 }
 
+static bool has_map(const FlPaintedRegion *painted, FlMapped dial, const FlPaintedRegion *other)
+{
+    return (painted->map ? painted->map[dial] : NULL) == (other->map ? other->map[dial] : NULL);
+}
+
 /* The wash of a region in a list so far, or a new one; -1: it has none. */
 static int wash_of_region(FlWashes *washes, const FlComposeInput *input, int region)
 {
@@ -204,6 +232,8 @@ static int wash_of_region(FlWashes *washes, const FlComposeInput *input, int reg
     const char *style = (const char *)&wash.style; // floats alone
     for (int w = 0; w < washes->n; w++)
         if (washes->wash[w].key == wash.key &&
+            has_map(painted, FL_MAP_WASH, washes->wash[w].painted) &&
+            has_map(painted, FL_MAP_CALM, washes->wash[w].painted) &&
             memcmp((const char *)&washes->wash[w].style, style, sizeof wash.style) == 0)
             return w;
     washes->wash = g_renew(FlWash, washes->wash, washes->n + 1);

@@ -296,5 +296,6 @@ void fl_guides_clear(FlGuides *guides)
     g_free(guides->bare);
     g_free(guides->motion);
     g_free(guides->turn);
+    free(guides->share);
     *guides = (FlGuides){0};
 }

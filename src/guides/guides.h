@@ -41,6 +41,7 @@ typedef struct FlGuides {
     bool has_motion; // somewhere in the mask; else the two planes are undefined
     int32_t *motion; // interleaved, FL_MOTION_ONE a px, FL_MOTION_UNKNOWN; 2 * width * height
     int16_t *turn;   // the turn of the drawing, 65536 a turn; 0 where that is unknown
+    float *share;    // of carry or strength, the engine's dial, from a control map; NULL: all of it
 } FlGuides;
 
 /** The pixel of the planes that lies at a place. */

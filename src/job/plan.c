@@ -188,6 +188,8 @@ static bool begin(FlPlan *plan, const FlPlan *before, const FlRenderOptions *opt
     const bool same_config = before && before->options.config == options->config &&
                              before->options.config_text == options->config_text;
     plan->options = *options;
+    plan->maps =
+        g_hash_table_new_full(g_str_hash, g_str_equal, g_free, (GDestroyNotify)fl_control_map_free);
     plan->caller = fl_caller_of(options);
     plan->any_order = before || memory > 0;
     plan->styles =
@@ -333,6 +335,7 @@ void fl_plan_free(FlPlan *plan)
     g_free(plan->painted_by_ebsynth);
     g_free(plan->out.output);
     g_free(plan->out.movie);
+    g_hash_table_unref(plan->maps);
     fl_store_close(plan->cache);
     fl_inputs_free(plan->inputs);
     fl_style_cache_free(plan->styles);

@@ -23,8 +23,9 @@ typedef struct FlPlan {
     FlShapes shapes;  // as they are painted
     FlOutputs out;
     FlStyleCache *styles;
-    bool by_page; // paint of some region, and so the paper, is as large as the page asks for
-    bool half;    // drafts: the page is drawn, painted and composed at half their size
+    GHashTable *maps; // path or pattern of a control map -> FlControlMap
+    bool by_page;     // paint of some region, and so the paper, is as large as the page asks for
+    bool half;        // drafts: the page is drawn, painted and composed at half their size
     char *painted_by_ebsynth; // pattern: options.paint where that is what is merged; or NULL
     FlStore *cache;           // NULL: no paint is kept
     bool any_order;           // frames are asked for in any order, and options change

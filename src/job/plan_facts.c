@@ -79,8 +79,8 @@ static void add_values(FlFacts *facts, FlOptionScope scope, const void *object, 
             continue;
         g_autofree char *value = fl_option_get(option, object);
         // the folder of a style may move; its contents may not change
-        g_autofree char *base =
-            value && option->type == FL_OPTION_STYLE ? g_path_get_basename(value) : NULL;
+        const bool moves = option->type == FL_OPTION_STYLE || option->type == FL_OPTION_MAP;
+        g_autofree char *base = value && moves ? g_path_get_basename(value) : NULL;
         g_autofree char *name =
             region ? g_strdup_printf("%s of region %s", option->name, region) : NULL;
         fl_facts_add(facts, name ? name : option->name, base ? base : value);
@@ -91,6 +91,22 @@ void fl_facts_add_options(FlFacts *facts, FlOptionScope scope, const void *objec
                           const char *region)
 {
     add_values(facts, scope, object, region, true);
+}
+
+/* The pictures of a region's control maps: of all, or of those that decide its paint. */
+static void add_maps(FlFacts *facts, const FlRegionPlan *painted, FlInputs *inputs, bool of_frames)
+{
+    for (int k = 0; k < FL_MAPS; k++) {
+        FlDigest sum = {0};
+        if (!painted->map[k] || (!of_frames && k != FL_MAP_CARRY && k != FL_MAP_STRENGTH))
+            continue;
+        for (const char *const *file = fl_control_map_files(painted->map[k]); *file; file++) {
+            const FlDigest digest = fl_inputs_digest(inputs, *file);
+            fl_digest_add(&sum, &digest, sizeof digest);
+        }
+        g_autofree char *base = g_path_get_basename(painted->settings.map[k]);
+        fl_facts_add_digest(facts, base, sum);
+    }
 }
 
 /* The results of options, then their values. */
@@ -111,6 +127,7 @@ static void add_painted(FlFacts *facts, const FlPlan *plan)
     for (int p = 0; p < shapes->n_painted; p++) {
         const FlRegionPlan *painted = &shapes->painted[p];
         fl_facts_add_options(facts, FL_SCOPE_REGION, &painted->settings, painted->name);
+        add_maps(facts, painted, plan->inputs, true);
         if (painted->flow_files)
             add_pattern(facts, shapes, plan->inputs, painted->flow_files, painted->name);
         if (painted->paint_files)
@@ -212,10 +229,12 @@ FlFacts *fl_region_facts(const FlShapes *shapes, const FlRegionPlan *region, FlI
         fl_facts_add(facts, "the keys of its style", region->styles->text);
         fl_facts_add_number(facts, "which of them it is", region->style_key);
     }
-    if (region->settings.keyed || region->styles)
+    if (region->settings.keyed || region->styles || region->map[FL_MAP_CARRY] ||
+        region->map[FL_MAP_STRENGTH])
         add_numbers(facts, shapes->drawing);
     add_values(facts, FL_SCOPE_REGION, &region->settings, NULL, false);
     add_style(facts, inputs, region->style->path);
+    add_maps(facts, region, inputs, false);
     return facts;
 }
 

@@ -128,6 +128,9 @@ static bool read_label(const FlConfig *config, int rule, const char *region, con
         if (!value)
             continue;
         *value++ = '\0';
+        if (g_str_has_prefix(*word, FL_MAP_OPTION))
+            return fl_fail(error, FL_ERROR_USAGE, "layer “%s”: %s names a file; say it in a config",
+                           label, *word);
         if (!fl_option_find(FL_SCOPE_REGION, *word) || is_said(config, rule, region, given, *word))
             continue;
         if (strcmp(*word, "merge-with") == 0 || strcmp(*word, "passthrough") == 0)

@@ -126,6 +126,70 @@ bool fl_plan_choose_fluid(FlRegionPlan *painted, bool flow, GError **error)
     return true;
 }
 
+static const char *const map_names[FL_MAPS] = {"map-carry", "map-strength", "map-wash",
+                                               "map-calm",  "map-front",    "map-stain"};
+
+/* The map of a region's dial: that of a pattern with {region} may be missing, which leaves the
+ * dial as it is. */
+static bool open_map(FlPlan *plan, FlRegionPlan *painted, int k, GError **error)
+{
+    g_auto(GStrv) parts = g_strsplit(painted->settings.map[k], "{region}", -1);
+    g_autofree char *pattern = g_strjoinv(painted->name, parts);
+    FlControlMap *map = g_hash_table_lookup(plan->maps, pattern);
+    g_autoptr(GError) problem = NULL;
+    if (!map && (map = fl_control_map_open(pattern, &problem)))
+        g_hash_table_insert(plan->maps, g_strdup(pattern), map);
+    if (!map && !(parts[1] && g_error_matches(problem, FL_ERROR, FL_ERROR_INPUT))) {
+        g_propagate_prefixed_error(error, g_steal_pointer(&problem),
+                                   "region %s: ‘%s’: ", painted->name, map_names[k]);
+        return false;
+    }
+    for (const char *const *file = map ? fl_control_map_files(map) : NULL; file && *file; file++)
+        fl_inputs_add(plan->inputs, *file);
+    painted->map[k] = map;
+    return true;
+}
+
+/* Finds the control maps of a region, whose engine must read them. */
+static bool open_maps(FlPlan *plan, FlRegionPlan *painted, GError **error)
+{
+    const FlRegionSettings *settings = &painted->settings;
+    const FlEngine *engine = painted->engine;
+    const bool misses[FL_MAPS] = {
+        [FL_MAP_CARRY] = !engine->enlarges, [FL_MAP_STRENGTH] = engine->plays};
+    for (int k = 0; k < FL_MAPS; k++) {
+        if (!settings->map[k])
+            continue;
+        if (misses[k])
+            return fl_fail(error, FL_ERROR_USAGE,
+                           "region %s: ‘%s’: the engine %s has no such dial; expected %s",
+                           painted->name, map_names[k], engine->name,
+                           k == FL_MAP_CARRY ? "patch" : "transport");
+        if (!open_map(plan, painted, k, error))
+            return false;
+    }
+    return true;
+}
+
+/* Checks that a pattern with {region} has the pictures of some region. */
+static bool check_maps(const FlShapes *shapes, GError **error)
+{
+    for (int k = 0; k < FL_MAPS; k++) {
+        const char *wanted = NULL;
+        bool found = false;
+        for (int p = 0; p < shapes->n_painted; p++) {
+            wanted =
+                shapes->painted[p].settings.map[k] ? shapes->painted[p].settings.map[k] : wanted;
+            found = found || shapes->painted[p].map[k];
+        }
+        if (wanted && !found)
+            return fl_fail(error, FL_ERROR_INPUT,
+                           "%s: no region has such a picture; expected that of some region",
+                           wanted);
+    }
+    return true;
+}
+
 static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
 {
     const FlRegion *r = fl_drawing_region(plan->shapes.drawing, painted->region);
@@ -144,7 +208,8 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
         fl_params_scale_lengths(&painted->settings.params, .5f);
     painted->engine = fl_engine_choose(painted->settings.engine, painted->style->path);
     if (!fl_plan_choose_fluid(painted, plan->options.flow, error) || !check_keyed(painted, error) ||
-        !check_export(plan, painted, error) || !warn_of_style(plan, painted, error))
+        !open_maps(plan, painted, error) || !check_export(plan, painted, error) ||
+        !warn_of_style(plan, painted, error))
         return false;
     if (plan->options.verbose)
         fl_note(&plan->caller, "region %s: style %s, engine %s", r->name, painted->style->path,
@@ -189,7 +254,7 @@ bool fl_plan_choose_styles(FlPlan *plan, GError **error)
     for (int p = 0; shapes->surround && p < shapes->n_painted; p++)
         if (!choose_style(plan, &shapes->painted[p], error))
             return false;
-    if (!warn_of_borders(plan, error))
+    if (!check_maps(shapes, error) || !warn_of_borders(plan, error))
         return false;
     note_older_word(plan);
     memset(plan->paper, 255, sizeof plan->paper);

@@ -20,11 +20,12 @@ typedef struct FlRegionPlan {
     bool more;                    // the next painted region is the same region in its next style
     const FlStyleInstance *style; // borrowed
     const FlEngine *engine;
-    const char *paint_files; // borrowed: pattern of files of its paint; NULL: it is painted
-    FlRect place;            // of the paint in those files; width 0: not known
-    const char *flow_files;  // borrowed: pattern of flow files; NULL: flow from the masks
-    bool keeps_flow;         // for a dump
-    bool loops;              // the film's end leads into its beginning
+    const char *paint_files;    // borrowed: pattern of files of its paint; NULL: it is painted
+    FlRect place;               // of the paint in those files; width 0: not known
+    FlControlMap *map[FL_MAPS]; // borrowed; NULL: the dial holds everywhere
+    const char *flow_files;     // borrowed: pattern of flow files; NULL: flow from the masks
+    bool keeps_flow;            // for a dump
+    bool loops;                 // the film's end leads into its beginning
 } FlRegionPlan;
 
 /** The share of its style in a region in a frame of a drawing, 0..1; 1 unless styles are keyed. */

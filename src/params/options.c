@@ -421,6 +421,7 @@ char *fl_option_get(const FlOption *option, const void *object)
     case FL_OPTION_PATH:
     case FL_OPTION_GROUND:
     case FL_OPTION_NAME:
+    case FL_OPTION_MAP:
     case FL_OPTION_STYLE:
         return g_strdup(*(const char *const *)field);
     case FL_OPTION_TINT:

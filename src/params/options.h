@@ -34,6 +34,7 @@ typedef enum FlOptionType {
     FL_OPTION_STYLE,
     FL_OPTION_TINT,
     FL_OPTION_NAME,
+    FL_OPTION_MAP,
     FL_OPTION_PRESET,
     FL_OPTION_PARAM,
     FL_OPTION_COMMAND,

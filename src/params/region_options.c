@@ -81,6 +81,13 @@ static char *style_path(const char *value, const char *folder)
     return is_path ? g_steal_pointer(&path) : g_strdup(value);
 }
 
+static char *map_path(const char *value, const char *folder)
+{
+    return !*value                                ? NULL
+           : !folder || g_path_is_absolute(value) ? g_strdup(value)
+                                                  : g_build_filename(folder, value, NULL);
+}
+
 static bool set_tint(FlRegionSettings *settings, const char *value)
 {
     int tint = FL_TINT_FILL;
@@ -150,6 +157,9 @@ static bool store(FlRegionSettings *settings, const FlOption *option, const char
         return true;
     case FL_OPTION_NAME:
         replace_string(field, *value ? g_strdup(value) : NULL);
+        return true;
+    case FL_OPTION_MAP:
+        replace_string(field, map_path(value, folder));
         return true;
     default:
         g_assert_not_reached();
@@ -224,7 +234,7 @@ static bool set_plain(FlRegionSettings *settings, const char *key, const char *v
 static bool is_keyed(const FlOption *option, const char *value, const char *folder)
 {
     g_autofree char *path = option->type == FL_OPTION_STYLE ? style_path(value, folder) : NULL;
-    return option->type != FL_OPTION_NAME && fl_keys_are(value) &&
+    return option->type != FL_OPTION_NAME && option->type != FL_OPTION_MAP && fl_keys_are(value) &&
            (!path || !g_file_test(path, G_FILE_TEST_IS_DIR));
 }
 
@@ -296,6 +306,8 @@ void fl_region_settings_clear(FlRegionSettings *settings)
     g_clear_pointer(&settings->merge_with, g_free);
     g_clear_pointer(&settings->wet_with, g_free);
     g_clear_pointer(&settings->keyed, g_ptr_array_unref);
+    for (int k = 0; k < FL_MAPS; k++)
+        g_clear_pointer(&settings->map[k], g_free);
 }
 
 bool fl_overrides_add(FlOverrides *overrides, const char *key, const char *value,

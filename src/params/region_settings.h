@@ -81,6 +81,19 @@ typedef enum FlRecordingEnd {
     FL_RECORDING_HOLD,      // the last
 } FlRecordingEnd;
 
+/** The dials of which a control map may leave a share at each pixel. */
+typedef enum FlMapped {
+    FL_MAP_CARRY,
+    FL_MAP_STRENGTH,
+    FL_MAP_WASH,
+    FL_MAP_CALM,
+    FL_MAP_FRONT,
+    FL_MAP_STAIN,
+    FL_MAPS,
+} FlMapped;
+
+#define FL_MAP_OPTION "map-" // before the dial's name
+
 /** The settings of one region, completely resolved. */
 typedef struct FlRegionSettings {
     char *style; // a name or a path; NULL: not set
@@ -118,7 +131,8 @@ typedef struct FlRegionSettings {
     bool reverse;
     FlRecordingEnd recording_end; // of LazyFluids
     FlPassthrough passthrough;
-    char *merge_with; // another region's name, or NULL
+    char *merge_with;   // another region's name, or NULL
+    char *map[FL_MAPS]; // paths or patterns of control maps, with {region} perhaps; or NULL
     FlParams params;
     bool older_preset; // its preset was chosen by an older word
     GPtrArray *keyed;  // of FlKeys: options whose fields have the first key's value; NULL: none

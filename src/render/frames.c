@@ -173,6 +173,7 @@ static FlComposeInput compose_input(const FlFrames *frames, int frame)
         .seed = plan->options.seed,
         .width = shapes->width,
         .height = shapes->height,
+        .number = fl_drawing_number(shapes->drawing, frame),
         .paper_px = shapes->paper_px,
         .layers_apart = plan->out.layers || plan->out.format->takes_layers,
         .linear = plan->options.blend == FL_BLEND_LINEAR,

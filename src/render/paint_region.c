@@ -108,6 +108,9 @@ static bool configure(GivenRegion *given, GError **error)
         !fl_plan_region_settings(none, -1, plan->name, NULL, settings, &plan->settings, error))
         return false;
     given->configured = true;
+    for (int k = 0; k < FL_MAPS; k++)
+        if (plan->settings.map[k])
+            return refuse(error, "control maps are those of a drawing's frames; expected none");
     return plan->settings.style || refuse(error, "‘settings’ have no \"style\"");
 }
 

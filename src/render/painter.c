@@ -89,6 +89,7 @@ void fl_painter_init(FlPainter *painter, const FlShapes *shapes, const FlRegionP
                                       .name = region->name,
                                       .settings = &painter->own.settings,
                                       .style = region->style,
+                                      .map = painter->own.map,
                                       .share = 1,
                                       .more = region->more,
                                       .width = shapes->width,

@@ -415,6 +415,19 @@ bool fl_painter_rests(FlPainter *painter, int last)
             depth_picture(painter, last) == depth_picture(painter, now));
 }
 
+/* The control map of the engine's dial. */
+static bool read_map(const FlPainter *painter, FlGuides *guides, GError **error)
+{
+    FlControlMap *const *map = painter->plan->map;
+    const FlRect page = guided_part(painter->plan->style, fl_painter_page(painter));
+    FlControlMap *own = map[FL_MAP_CARRY] ? map[FL_MAP_CARRY] : map[FL_MAP_STRENGTH];
+    return !own ||
+           fl_control_map_make(
+               own,
+               fl_drawing_number(painter->shapes->drawing, frame_of(painter, painter->picture)),
+               fl_painter_guided(painter), page.width, page.height, &guides->share, error);
+}
+
 /* The depth takes as much scratch as the other planes, which are made later. Guides of some presets
  * lack a depth. */
 bool fl_painter_make_guides(FlPainter *painter, GError **error)
@@ -430,7 +443,8 @@ bool fl_painter_make_guides(FlPainter *painter, GError **error)
            (!deep || measure_depth(painter, frame_of(painter, depth_picture(painter, picture)),
                                    guides, error)) &&
            fl_guide_sequence_planes(painter->sequence, picture, guides, error) &&
-           (!dries(painter) || measure_bare(painter, guides, error));
+           (!dries(painter) || measure_bare(painter, guides, error)) &&
+           read_map(painter, guides, error);
 }
 
 /* ---- inspection ------------------------------------------------------------------------------ */

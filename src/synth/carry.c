@@ -17,7 +17,6 @@ typedef struct Vector {
 /* Values shared by all pixels of a frame. */
 typedef struct Plan {
     const FlCarry *input;
-    int carry;            // of the motion, CARRY_ONE is all
     int32_t x_off, y_off; // 0 … ROUND_ONE: what is added before places are rounded down
     const FlExemplarLevel *level;
 } Plan;
@@ -41,7 +40,6 @@ static int32_t rounding(int n, uint32_t irrational)
 static Plan plan_of(const FlCarry *input, const FlExemplarLevel *level)
 {
     return (Plan){.input = input,
-                  .carry = (int)(input->carry * CARRY_ONE + 0.5f),
                   .x_off = rounding(input->frame, GOLDEN),
                   .y_off = rounding(input->frame, ROOT),
                   .level = level};
@@ -72,6 +70,17 @@ static FlMatch carried(const Plan *plan, FlMatch m, Vector rest, int16_t turn)
     return m;
 }
 
+/* The share of the motion that is carried at a pixel of the guides. */
+static float carry_at(const FlCarry *input, size_t pixel)
+{
+    return input->guides->share ? input->carry * input->guides->share[pixel] : input->carry;
+}
+
+static int in_steps(float carry)
+{
+    return (int)(carry * CARRY_ONE + 0.5f);
+}
+
 /* Splits the motion of a pixel of the frame: what is carried, and in px what is left of that along
  * the direction. */
 static Vector split(const Plan *plan, size_t pixel, float *left_px)
@@ -80,9 +89,10 @@ static Vector split(const Plan *plan, size_t pixel, float *left_px)
     const int32_t *u = guides->motion + 2 * pixel;
     const int16_t *d = fl_turns[guides->angle[pixel]];
     const int64_t along = ((int64_t)u[0] * d[0] + (int64_t)u[1] * d[1]) >> 14;
-    *left_px = fabsf((float)along) / FL_MOTION_ONE * (1 - plan->input->carry);
-    return (Vector){(int32_t)((int64_t)u[0] * plan->carry / CARRY_ONE),
-                    (int32_t)((int64_t)u[1] * plan->carry / CARRY_ONE)};
+    const float carry = carry_at(plan->input, pixel);
+    *left_px = fabsf((float)along) / FL_MOTION_ONE * (1 - carry);
+    return (Vector){(int32_t)((int64_t)u[0] * in_steps(carry) / CARRY_ONE),
+                    (int32_t)((int64_t)u[1] * in_steps(carry) / CARRY_ONE)};
 }
 
 static FlMatch match_at(const FlNnf *nnf, int x, int y)
@@ -169,7 +179,8 @@ static void arrive(const Plan *plan, const FlNnf *before, FlRect from, int x, in
     const bool inside = guides->mask[pixel] >= FL_INSIDE;
     const bool known = guides->has_motion && guides->motion[2 * pixel] != FL_MOTION_UNKNOWN;
     Origin origin = {.match = {.frame = FL_NO_MATCH}};
-    out->speed[p] = inside ? (1 - input->carry) * length_of_flow(guides, pixel) : 0;
+    const float carry = inside ? carry_at(input, pixel) : 0;
+    out->speed[p] = inside ? (1 - carry) * length_of_flow(guides, pixel) : 0;
     if (inside && known) {
         const Vector k = split(plan, pixel, &out->speed[p]);
         origin = nearest_paint(before, x - from.x, y - from.y, (Vector){-k.x, -k.y});
@@ -179,7 +190,7 @@ static void arrive(const Plan *plan, const FlNnf *before, FlRect from, int x, in
     }
     FlMatch m = origin.match;
     if (m.frame != FL_NO_MATCH && inside && known) {
-        const int turn = guides->turn[pixel] * plan->carry / CARRY_ONE;
+        const int turn = guides->turn[pixel] * in_steps(carry) / CARRY_ONE;
         m = carried(plan, m, origin.rest, (int16_t)turn);
         m.off = off_from(plan, origin.off);
     }

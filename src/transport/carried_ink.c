@@ -132,9 +132,10 @@ static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, const
 #pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(fl_rect_pixels(rect)))
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
-            const float taper = strength * taper_at(ink, guides,
-                                                    (size_t)(y + rect.y) * (size_t)guides->width +
-                                                        (size_t)(x + rect.x));
+            const size_t pixel =
+                (size_t)(y + rect.y) * (size_t)guides->width + (size_t)(x + rect.x);
+            const float mapped = guides->share ? guides->share[pixel] : 1;
+            const float taper = strength * mapped * taper_at(ink, guides, pixel);
             const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
             float *v = velocity + 2 * p;
             v[0] = v[1] = 0;

@@ -54,7 +54,8 @@ static bool make_planes(Front *front, GError **error)
         return true;
     for (size_t p = 0; p < n; p++) {
         const int32_t nearest = edge->nearest[p];
-        front->width[p] = nearest >= 0 ? widths[nearest] : 0;
+        const float share = front->dials->front_map ? front->dials->front_map[p] : 1;
+        front->width[p] = nearest >= 0 ? share * widths[nearest] : 0;
         front->strength[p] = nearest >= 0 ? strengths[nearest] : 0;
     }
     return fl_blur(front->width, shape->rect.width, shape->rect.height, 2 * shape->px, error) &&

@@ -36,6 +36,7 @@ typedef struct Planes {
     FlRect rect;
     uint8_t *now, *ahead, *touches;
     float *distance_before, *beyond, *motion;
+    float *front, *stain; // control maps; NULL: none
 } Planes;
 
 static void planes_clear(Planes *planes)
@@ -46,6 +47,8 @@ static void planes_clear(Planes *planes)
     free(planes->distance_before);
     free(planes->beyond);
     free(planes->motion);
+    free(planes->front);
+    free(planes->stain);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Planes, planes_clear)
@@ -236,6 +239,22 @@ static FlAffine within(const FlAffine *map, FlRect rect)
     return own;
 }
 
+/** The shares of a region's dials at each cell. */
+static bool read_maps(const FlWet *wet, FlMarker *marker, int frame, Planes *planes, GError **error)
+{
+    FlControlMap *const *map = marker->plan->map;
+    const FlShapes *shapes = wet->shapes;
+    const int number = fl_drawing_number(shapes->drawing, frame);
+    const double width = (double)shapes->width / wet->cell;
+    const double height = (double)shapes->height / wet->cell;
+    const bool made = fl_control_map_make(map[FL_MAP_FRONT], number, planes->rect, width, height,
+                                          &planes->front, error) &&
+                      fl_control_map_make(map[FL_MAP_STAIN], number, planes->rect, width, height,
+                                          &planes->stain, error);
+    marker->dials.front_map = planes->front, marker->dials.stain_map = planes->stain;
+    return made;
+}
+
 static bool mark_moving(const FlWetStep *step, FlMarker *marker, int before, int now, bool moves,
                         GError **error)
 {
@@ -243,7 +262,8 @@ static bool mark_moving(const FlWetStep *step, FlMarker *marker, int before, int
     g_auto(Planes) planes = {0};
     g_auto(FlMovingEdge) edge = {0};
     if (!planes_init(&planes, marked_part(wet, marker->plan, before, now), error) ||
-        !read_planes(step, marker, before, now, moves, &planes, error))
+        !read_planes(step, marker, before, now, moves, &planes, error) ||
+        !read_maps(wet, marker, now, &planes, error))
         return false;
     FlWetShape shape = {.rect = planes.rect,
                         .page = wet->sheet.page,

@@ -82,8 +82,10 @@ void fl_wet_turn_dials(const FlWet *wet, FlMarker *marker, int frame)
     // halfway from style to style both have their whole fronts
     const float share = fl_region_share(marker->plan, wet->shapes->drawing, frame);
     const float dial = marker->size * MIN(2 * share, 1);
-    marker->dials = (FlWetDials){&marker->plan->style->front, dial * (float)now.front,
-                                 dial * (float)now.stain, wet->overrun};
+    marker->dials = (FlWetDials){.style = &marker->plan->style->front,
+                                 .front = dial * (float)now.front,
+                                 .stain = dial * (float)now.stain,
+                                 .overrun = wet->overrun};
 }
 
 bool fl_wet_make_markers(FlWet *wet, GError **error)

@@ -11,7 +11,8 @@
 typedef struct FlWetDials {
     const FlFrontStyle *style;
     float front, stain;
-    float overrun; // px of the page
+    float overrun;                      // px of the page
+    const float *front_map, *stain_map; // shares of front and stain in a region's rect; NULL: all
 } FlWetDials;
 
 /** The surroundings of a region, planes of its rect. */

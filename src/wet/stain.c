@@ -94,6 +94,13 @@ static float away_from_sides(const FlWetShape *shape, float depth)
     return fl_ease(0, 8 * shape->px, depth);
 }
 
+/** The strength of the stain at a pixel. */
+static float stain_at(const Passing *pixel, const FlWetDials *dials)
+{
+    const size_t p = (size_t)pixel->y * (size_t)pixel->shape->rect.width + (size_t)pixel->x;
+    return dials->stain_map ? dials->stain * dials->stain_map[p] : dials->stain;
+}
+
 /** A mark lasts from the frame before to this one, and so do its strength and its ink: in one piece
  * with the marks of the frames around, unless the shape leaps away. */
 static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, float now,
@@ -115,7 +122,8 @@ static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, floa
                         .lost = (cover_of(cover.most) - cover_of(now)) * (1 - sides),
                         .age = shape->frames * (1 - cover.last),
                         .depth = CLAMP(depth, -2, 14 * shape->px)};
-    mark.charge = dials->stain * kept * (1 - cover_of(now)) * fl_ease(0, 0.1f, cover.most - now);
+    mark.charge =
+        stain_at(pixel, dials) * kept * (1 - cover_of(now)) * fl_ease(0, 0.1f, cover.most - now);
     for (int c = 0; c < 3; c++)
         mark.ink[c] = between(point->ink_before[c], point->ink[c], cover.last);
     g_array_append_val(marks, mark);
@@ -137,7 +145,7 @@ static float under(const FlWetShape *shape, const FlEdgePoint *point)
 static void wet_below(const Passing *pixel, const FlWetDials *dials, int32_t at, float depth,
                       GArray *fronts)
 {
-    const float kept = MIN(dials->stain * pixel->point->kept, 1);
+    const float kept = MIN(stain_at(pixel, dials) * pixel->point->kept, 1);
     const float away = away_from_sides(pixel->shape, depth_between_sides(pixel));
     FlFrontMark mark = {.at = at, .density = kept * away * cover_of(depth), .edge = 3};
     memcpy(mark.ink, pixel->point->ink, sizeof mark.ink);
