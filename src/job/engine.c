@@ -40,11 +40,6 @@ static bool patch_rest(void *state)
     return fl_synth_rest(state);
 }
 
-static bool patch_guide_pairs(const void *state, FlGuidePairs *pairs, GError **error)
-{
-    return fl_synth_guide_pairs(state, pairs, error);
-}
-
 static GBytes *patch_save(void *state, GError **error)
 {
     return fl_synth_save(state, error);
@@ -82,11 +77,6 @@ static bool lazy_frame(void *state, FlGuides *guides, const FlEnginePaint *paint
 static float lazy_reach(const FlStyleInstance *style, const FlParams *params)
 {
     return style->exemplar->cut_out ? fl_lazy_reach(style->exemplar, params) : 0;
-}
-
-static bool lazy_guide_pairs(const void *state, FlGuidePairs *pairs, GError **error)
-{
-    return fl_lazy_guide_pairs(state, pairs, error);
 }
 
 static GBytes *lazy_save(void *state, GError **error)
@@ -170,7 +160,6 @@ static const FlEngine engines[] = {
                          .frame = patch_frame,
                          .rest = patch_rest,
                          .drying = patch_drying,
-                         .guide_pairs = patch_guide_pairs,
                          .save = patch_save,
                          .load = patch_load},
     [FL_ENGINE_LAZYFLUIDS] = {.name = "lazyfluids",
@@ -180,7 +169,6 @@ static const FlEngine engines[] = {
                               .close = lazy_close,
                               .measure = lazy_measure,
                               .frame = lazy_frame,
-                              .guide_pairs = lazy_guide_pairs,
                               .save = lazy_save,
                               .load = lazy_load},
     [FL_ENGINE_TRANSPORT] = {.name = "transport",

@@ -52,9 +52,6 @@ typedef struct FlEngine {
     /** The number of frames in which paint still changes after the drawing has come to rest; may be
      * NULL. Until then regions and their parts do not rest. */
     int (*drying)(const FlStyleInstance *style, const FlParams *params);
-    /** The guides of the frame just painted, which had a view and levels in its statistics. May be
-     * NULL. FL_ERROR_NO_MEMORY. */
-    bool (*guide_pairs)(const void *state, FlGuidePairs *pairs, GError **error);
     /** Saves the state for the next frame, to be freed with g_bytes_unref(); NULL with an error. */
     GBytes *(*save)(void *state, GError **error);
     /** FL_ERROR_CHANGED if the bytes are damaged or do not fit; they need not be trusted. */

@@ -8,8 +8,8 @@
 /** Owns its style instances until _free. */
 typedef struct FlStyleCache FlStyleCache;
 
-/** makes: styles are made larger, see style_size.h; exact: fields have the size of the picture. */
-FlStyleCache *fl_style_cache_new(bool makes, bool exact);
+/** makes: styles are made larger, see style_size.h. */
+FlStyleCache *fl_style_cache_new(bool makes);
 
 /** Sets the caller, who is told of styles that are made; before, there is none. */
 void fl_style_cache_set_caller(FlStyleCache *cache, const FlCaller *caller);
