@@ -47,20 +47,6 @@ static char *hidden_name(const char *path)
     return g_build_filename(folder, name, NULL);
 }
 
-/** A locked descriptor of a file without a name in the path's folder, or -1. */
-static int open_nameless(const char *path)
-{
-#ifdef O_TMPFILE
-    g_autofree char *folder = g_path_get_dirname(path);
-    const int fd = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, MODE);
-    if (fd >= 0)
-        (void)flock(fd, LOCK_EX | LOCK_NB); // before it gets its hidden name
-    return fd;
-#else
-    return -1;
-#endif
-}
-
 /**
  * Opens a new locked file of the hidden name. Returns: -1 on failure; an error is set if another
  * process holds the lock. Replaces a leftover instead of reusing it: a child of the killed process
@@ -77,12 +63,12 @@ static int open_hidden(FlAtomicFile *file, GError **error)
     return fl_lock_take(file->temporary, file->path, error);
 }
 
-/** Adopts the descriptor; -1: opens a hidden file. */
-static bool begin(FlAtomicFile *file, int fd, GError **error)
+bool fl_atomic_open(FlAtomicFile *file, const char *path, bool overwrite, GError **error)
 {
     GError *conflict = NULL;
-    if (fd < 0)
-        fd = open_hidden(file, &conflict);
+    if (!prepare(file, path, overwrite, error))
+        return false;
+    const int fd = open_hidden(file, &conflict);
     if (fd >= 0) {
         file->stream = fdopen(fd, "wb");
         return true;
@@ -94,16 +80,6 @@ static bool begin(FlAtomicFile *file, int fd, GError **error)
     g_clear_pointer(&file->temporary, g_free); // it belongs to the other process
     fl_atomic_clear(file);
     return false;
-}
-
-bool fl_atomic_open(FlAtomicFile *file, const char *path, bool overwrite, GError **error)
-{
-    return prepare(file, path, overwrite, error) && begin(file, open_nameless(path), error);
-}
-
-bool fl_atomic_reserve(FlAtomicFile *file, const char *path, bool overwrite, GError **error)
-{
-    return prepare(file, path, overwrite, error) && begin(file, -1, error);
 }
 
 static bool sync_path(const char *path, int flags)
@@ -118,14 +94,6 @@ static bool sync_path(const char *path, int flags)
 static bool sync_file(FlAtomicFile *file)
 {
     return fflush(file->stream) == 0 && fsync(fileno(file->stream)) == 0;
-}
-
-/** Gives a nameless file a name; errno is EEXIST if the name is taken. */
-static bool name_file(const FlAtomicFile *file, const char *path)
-{
-    char self[64];
-    g_snprintf(self, sizeof self, "/proc/self/fd/%d", fileno(file->stream));
-    return linkat(AT_FDCWD, self, AT_FDCWD, path, AT_SYMLINK_FOLLOW) == 0;
 }
 
 /** Renames without replacing; where the file system cannot, checks first. */
@@ -144,44 +112,11 @@ static bool rename_new(const char *from, const char *to)
     return rename(from, to) == 0;
 }
 
-/** Removes a leftover hidden file; an error is set if another process is writing to that file. */
-static bool remove_left(const char *name, const char *path, GError **error)
-{
-    const int fd = fl_lock_take(name, path, error);
-    const bool removed = fd >= 0 && g_unlink(name) == 0;
-    if (fd >= 0)
-        close(fd);
-    return removed;
-}
-
-/** Gives a nameless file its hidden name, replacing a leftover. */
-static bool name_hidden(FlAtomicFile *file, GError **error)
-{
-    g_autofree char *name = hidden_name(file->path);
-    while (!name_file(file, name))
-        if (errno != EEXIST || !remove_left(name, file->path, error))
-            return false;
-    file->temporary = g_steal_pointer(&name);
-    return true;
-}
-
-static bool publish(FlAtomicFile *file, GError **error)
-{
-    if (!file->temporary && !file->overwrite)
-        return name_file(file, file->path);
-    if (!file->temporary && !name_hidden(file, error))
-        return false;
-    return file->overwrite ? rename(file->temporary, file->path) == 0
-                           : rename_new(file->temporary, file->path);
-}
-
 bool fl_atomic_commit(FlAtomicFile *file, GError **error)
 {
-    GError *conflict = NULL;
-    if (!sync_file(file) || !publish(file, &conflict)) {
-        if (conflict)
-            g_propagate_error(error, conflict);
-        else if (errno == EEXIST)
+    if (!sync_file(file) || (file->overwrite ? rename(file->temporary, file->path) != 0
+                                             : !rename_new(file->temporary, file->path))) {
+        if (errno == EEXIST)
             fl_exists_error(error, file->path);
         else
             fl_output_error(error, file->path, errno);

@@ -9,15 +9,14 @@
 /**
  * A file that is being written. Its name appears with fl_atomic_commit() only.
  *
- * It has no name if the file system allows that. Otherwise, and while it replaces another file, its
- * name is ".NAME.part" in the same folder; fl_atomic_clear() removes that. The file is locked: the
- * next writer of NAME removes the leftover of a killed process, but never one that is being
- * written.
+ * Until then it is ".NAME.part" in the same folder, which fl_atomic_clear() removes. The file is
+ * locked: the next writer of NAME removes the leftover of a killed process, but never one that is
+ * being written.
  */
 typedef struct FlAtomicFile {
-    FILE *stream;    // write here; of a reserved file it only holds the lock
+    FILE *stream;    // write here, or by the name `temporary`
     char *path;      // its final name
-    char *temporary; // NULL: without a name
+    char *temporary; // its present one; NULL: it has its final name
     bool overwrite;
 } FlAtomicFile;
 
@@ -29,15 +28,11 @@ typedef struct FlAtomicFile {
  */
 bool fl_atomic_open(FlAtomicFile *file, const char *path, bool overwrite, GError **error);
 
-/** The same for a program that writes the file itself: it has the name file->temporary. */
-bool fl_atomic_reserve(FlAtomicFile *file, const char *path, bool overwrite, GError **error);
-
 /**
  * Syncs the file and gives it its name. The file needs clearing in any case.
  *
  * Returns: false with FL_ERROR_OUTPUT (a full disk, for instance), or FL_ERROR_EXISTS if a file of
- * that name has appeared meanwhile or another process is writing to it; that file is then
- * unchanged.
+ * that name has appeared meanwhile, which is then unchanged.
  */
 bool fl_atomic_commit(FlAtomicFile *file, GError **error);
 

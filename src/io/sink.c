@@ -17,7 +17,7 @@ static char *mark_of(const FlSink *sink, int number)
 bool fl_sink_begin(FlSink *sink, GError **error)
 {
     sink->mark = mark_of(sink, 0);
-    return fl_atomic_reserve(&sink->file, sink->params.path, sink->params.overwrite, error);
+    return fl_atomic_open(&sink->file, sink->params.path, sink->params.overwrite, error);
 }
 
 static void end_file(FlSink *sink)
