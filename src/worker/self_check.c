@@ -193,6 +193,20 @@ static cairo_surface_t *draw_truth(const FlSelfCheck *check, FlSvg *svg, const c
     return drawn ? g_steal_pointer(&truth) : NULL;
 }
 
+/** Counts the pixels in which a picture visibly differs from n pieces drawn one by one; -1 with an
+ * error, as of the picture if that is NULL. */
+static int count_differing(const FlSelfCheck *check, FlSvg *svg, cairo_surface_t *one,
+                           const FlPiece *piece, int n, FlPageSize page, GError **error)
+{
+    g_autoptr(cairo_surface_t) all =
+        one ? draw_pieces(svg, piece, n, check->width, check->height, page, error) : NULL;
+    size_t where = 0;
+    return !all ? -1
+                : compare((const uint32_t *)cairo_image_surface_get_data(one),
+                          (const uint32_t *)cairo_image_surface_get_data(all),
+                          (size_t)check->width * check->height, &where);
+}
+
 /** True if a group looks as its leaves do. */
 static FlVerdict judge(const FlSelfCheck *check, FlSvg *svg, const char *group, FlPageSize page,
                        GError **error)
@@ -205,17 +219,11 @@ static FlVerdict judge(const FlSelfCheck *check, FlSvg *svg, const char *group, 
             g_array_append_val(inner, *piece);
     }
     g_autoptr(cairo_surface_t) truth = draw_truth(check, svg, group, page, error);
-    g_autoptr(cairo_surface_t) sum =
-        truth ? draw_pieces(svg, (const FlPiece *)inner->data, (int)inner->len, check->width,
-                            check->height, page, error)
-              : NULL;
-    if (!sum)
-        return FL_VERDICT_ERROR;
-    size_t where = 0;
-    const int visible = compare((const uint32_t *)cairo_image_surface_get_data(truth),
-                                (const uint32_t *)cairo_image_surface_get_data(sum),
-                                (size_t)check->width * check->height, &where);
-    return visible > MOST_VISIBLE + check->allowed ? FL_VERDICT_DIFFERS : FL_VERDICT_ALIKE;
+    const int visible = count_differing(check, svg, truth, (const FlPiece *)inner->data,
+                                        (int)inner->len, page, error);
+    return visible < 0                               ? FL_VERDICT_ERROR
+           : visible > MOST_VISIBLE + check->allowed ? FL_VERDICT_DIFFERS
+                                                     : FL_VERDICT_ALIKE;
 }
 
 /**
@@ -255,22 +263,6 @@ static bool differ_much(const uint32_t *a, const uint32_t *b, size_t n, int most
     return sum > (int64_t)n * 4 * most;
 }
 
-/** 1 if a leaf looks like its n parts drawn one by one, else 0; -1 with an error. */
-static int judge_leaf(const FlSelfCheck *check, FlSvg *svg, const FlPiece *piece, int n,
-                      FlPageSize page, GError **error)
-{
-    const FlPiece whole = {piece->leaf, FL_PART_WHOLE, FL_BLEND_MODE_OVER};
-    g_autoptr(cairo_surface_t) one =
-        draw_pieces(svg, &whole, 1, check->width, check->height, page, error);
-    g_autoptr(cairo_surface_t) all =
-        one ? draw_pieces(svg, piece, n, check->width, check->height, page, error) : NULL;
-    size_t where = 0;
-    return !all ? -1
-                : compare((const uint32_t *)cairo_image_surface_get_data(one),
-                          (const uint32_t *)cairo_image_surface_get_data(all),
-                          (size_t)check->width * check->height, &where) <= MOST_VISIBLE;
-}
-
 /** Counts the pieces from i on that belong to one leaf. */
 static int parts_from(const FlSelfCheck *check, guint i)
 {
@@ -297,8 +289,12 @@ static bool find_leaves(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf
         if (n < 2)
             continue;
         judged++;
-        const int alike = judge_leaf(check, svg, piece, n, page, error);
-        if (alike < 0)
+        const FlPiece whole = {piece->leaf, FL_PART_WHOLE, FL_BLEND_MODE_OVER};
+        g_autoptr(cairo_surface_t) one =
+            draw_pieces(svg, &whole, 1, check->width, check->height, page, error);
+        const int visible = count_differing(check, svg, one, piece, n, page, error);
+        const bool alike = visible <= MOST_VISIBLE;
+        if (visible < 0)
             return false;
         g_autofree char *key = fl_leaf_key(piece->leaf);
         if (!alike)
