@@ -176,7 +176,7 @@ static void the_example_of_the_manual_is_read(void)
     g_assert_cmpstr(hair->name, ==, "hair");
     g_assert_true(g_str_has_suffix(hair->place, "shot.conf:6"));
     g_assert_cmpstr(hair->match_layer[0], ==, "Character");
-    g_assert_cmpuint(g_strv_length(hair->match_fill), ==, 2);
+    g_assert_cmpuint(g_strv_length((char **)hair->match_fill), ==, 2);
     g_assert_cmpstr(hair->match_fill[1], ==, "#2e1f12");
     g_assert_null(hair->match_id);
     g_assert_false(hair->by_name);

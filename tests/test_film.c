@@ -1,4 +1,5 @@
 #include "drawing/drawing.h"
+#include "drawing/region_identity.h"
 #include "flat.h"
 #include "scratch.h"
 #include "worker/raster.h"
@@ -456,9 +457,9 @@ static void rules_choose_leaves_and_the_first_wins(void)
 {
     static const char *const snow[] = {"snow *", NULL}, *const greys[] = {"#474d50", NULL};
     static const char *const any[] = {"any", NULL}, *const head[] = {"HEAD", NULL};
-    const FlRegionRule rules[] = {
+    const FlRule rules[] = {
         {.name = "snow", .match_label = snow, .passthrough = FL_PASSTHROUGH_YES},
-        {.name = "hat", .match_fill = greys, .match_layer = head, .tolerance = 5},
+        {.name = "hat", .match_fill = greys, .match_layer = head, .match_tolerance = 5},
         {.name = "twigs", .match_fill = greys, .merge_with = "snow"},
         {.name = "rest", .match_fill = any},
     };
@@ -470,7 +471,7 @@ static void rules_choose_leaves_and_the_first_wins(void)
     assert_table(drawing, "[snow]*3 rest*3 hat*3");
     g_assert_cmpint(find(drawing, "hat")->rule, ==, 1);
     const char *const wrong[] = {"blueish", NULL};
-    const FlRegionRule bad = {.name = "sky", .match_fill = wrong};
+    const FlRule bad = {.name = "sky", .match_fill = wrong};
     g_autoptr(GError) error = NULL;
     g_assert_false(fl_rules_check(&bad, 1, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
@@ -602,7 +603,7 @@ static void regions_merge_through_others_and_not_in_circles(void)
                                         "<rect x='60' width='20' height='20' fill='#0000aa'/>");
     const char *const red[] = {"#aa0000", NULL}, *const green[] = {"#00aa00", NULL},
                       *const blue[] = {"#0000aa", NULL};
-    FlRegionRule rules[] = {{.name = "a", .match_fill = red, .merge_with = "b"},
+    FlRule rules[] = {{.name = "a", .match_fill = red, .merge_with = "b"},
                             {.name = "b", .match_fill = green, .merge_with = "c"},
                             {.name = "c", .match_fill = blue}};
     const FlDrawingOptions options = {.rules = rules, .n_rules = 3};

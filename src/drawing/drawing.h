@@ -3,8 +3,8 @@
 #define FLUIDY_DRAWING_DRAWING_H
 
 #include "base/warnings.h"
-#include "drawing/region_rules.h"
 #include "drawing/sequence.h"
+#include "params/config.h"
 #include "worker/draws.h"
 #include <fluidy/error.h>
 #include <fluidy/render.h>
@@ -32,8 +32,8 @@ typedef struct FlDrawingOptions {
     /** Tells now and then, from the calling thread, how many frames were read; false interrupts.
      *  Only where they are read apart; NULL: not called. */
     bool (*reading)(void *data, const FlSequence *sequence, int done);
-    void *data;                // for reading
-    const FlRegionRule *rules; // the first that matches wins; used during fl_drawing_open() only
+    void *data;          // for reading
+    const FlRule *rules; // the first that matches wins; used during fl_drawing_open() only
     int n_rules;
 } FlDrawingOptions;
 

@@ -5,43 +5,10 @@
 #include "base/suggest.h"
 #include <string.h>
 
-/* The rule's overrides that matter to finding regions. The strings stay the config's. */
-static void add_wishes(const FlRule *from, FlRegionRule *rule)
-{
-    g_auto(FlRegionSettings) settings = {0};
-    fl_region_settings_init(&settings);
-    fl_overrides_apply(&from->overrides, &settings);
-    rule->passthrough = settings.passthrough;
-    for (int i = 0; settings.merge_with && i < from->overrides.n; i++)
-        if (g_str_equal(from->overrides.override[i].key, "merge-with"))
-            rule->merge_with = from->overrides.override[i].value;
-}
-
-static FlRegionRule *rules_of(const FlConfig *config)
-{
-    FlRegionRule *rules = g_new0(FlRegionRule, MAX(config->n_rules, 1));
-    for (int i = 0; i < config->n_rules; i++) {
-        const FlRule *from = &config->rules[i];
-        rules[i] = (FlRegionRule){
-            .name = from->name,
-            .match_fill = (const char *const *)from->match_fill,
-            .match_stroke = (const char *const *)from->match_stroke,
-            .match_id = (const char *const *)from->match_id,
-            .match_class = (const char *const *)from->match_class,
-            .match_label = (const char *const *)from->match_label,
-            .match_layer = (const char *const *)from->match_layer,
-            .tolerance = from->match_tolerance,
-            .by_name = from->by_name,
-        };
-        add_wishes(from, &rules[i]);
-    }
-    return rules;
-}
-
 #define MOST_LISTED 20 // unmatched sections with a warning each
 
 /* Marks the rules that made a region. Returns: how many are not marked. */
-static int mark_used(const FlDrawing *drawing, const FlRegionRule *rules, int n, bool *used)
+static int mark_used(const FlDrawing *drawing, const FlRule *rules, int n, bool *used)
 {
     int unused = 0;
     for (int r = 0; r < fl_drawing_regions(drawing); r++)
@@ -175,7 +142,6 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
 {
     if (!fl_headroom_check(error))
         return NULL;
-    g_autofree FlRegionRule *rules = rules_of(config);
     FlDrawingOptions wanted = {.inputs = options->inputs,
                                .n_inputs = (int)g_strv_length((char **)options->inputs),
                                .range = options->frames,
@@ -194,7 +160,7 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
                                .key = options->key,
                                .reading = caller->progress ? tell_reading : NULL,
                                .data = (void *)(uintptr_t)caller,
-                               .rules = rules,
+                               .rules = config->rules,
                                .n_rules = config->n_rules};
     if (options->canvas && !fl_canvas_parse(options->canvas, &wanted.canvas, error))
         return NULL;

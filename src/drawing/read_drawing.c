@@ -173,7 +173,7 @@ static char *paint_text(const FlRegionIdentity *group)
     }
 }
 
-static bool is_paintable(const FlRegionIdentity *group, const FlRegionRule *rules)
+static bool is_paintable(const FlRegionIdentity *group, const FlRule *rules)
 {
     const FlPassthrough override =
         group->rule >= 0 ? rules[group->rule].passthrough : FL_PASSTHROUGH_AUTO;
@@ -183,7 +183,7 @@ static bool is_paintable(const FlRegionIdentity *group, const FlRegionRule *rule
 }
 
 static void describe(FlDrawing *drawing, const FlSurvey *survey, const GArray *groups,
-                     const FlRegionRule *rules)
+                     const FlRule *rules)
 {
     g_auto(GStrv) names = fl_name_groups(survey, groups, rules);
     for (guint r = 0; r < groups->len; r++) {
@@ -338,7 +338,7 @@ static int end_of(const int *into, guint n, int region)
 }
 
 /** Joins a region whose rule says merge_with to the region of that name. */
-static void merge_regions(FlSurvey *survey, GArray *groups, const FlRegionRule *rules)
+static void merge_regions(FlSurvey *survey, GArray *groups, const FlRule *rules)
 {
     g_auto(GStrv) names = fl_name_groups(survey, groups, rules);
     g_autofree int *into = g_new(int, groups->len + 1);
@@ -413,7 +413,7 @@ static void remember(FlDrawing *drawing, FlSurvey *survey)
 }
 
 /** Applies rules without conditions to the regions of their names. */
-static void apply_names(const FlSurvey *survey, GArray *groups, const FlRegionRule *rules, int n)
+static void apply_names(const FlSurvey *survey, GArray *groups, const FlRule *rules, int n)
 {
     g_auto(GStrv) names = fl_name_groups(survey, groups, rules);
     for (guint r = 0; r < groups->len; r++) {

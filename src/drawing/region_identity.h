@@ -60,6 +60,22 @@ int *fl_nesting(const FlSurvey *survey, int *const *track_of, const int *label_o
  *
  * Returns: a NULL-terminated list of groups->len names, to be freed with g_strfreev().
  */
-char **fl_name_groups(const FlSurvey *survey, const GArray *groups, const FlRegionRule *rules);
+char **fl_name_groups(const FlSurvey *survey, const GArray *groups, const FlRule *rules);
+
+/** The leaf that a rule is matched against; lists are joined with '\n'. */
+typedef struct FlRuleSubject {
+    const char *ids, *classes, *labels, *layers;
+    bool stroke;        // a stroke, else a fill
+    bool has_fill;      // the shape it belongs to has a fill
+    bool has_stroke;    // the shape it belongs to has a stroke
+    const char *paint;  // "#rrggbb", "gradient", "image" or "mixed"
+    const uint8_t *rgb; // of a flat paint
+} FlRuleSubject;
+
+/** Checks the colours of the rules. Returns: false with FL_ERROR_USAGE, naming rule and value. */
+bool fl_rules_check(const FlRule *rules, int n, GError **error);
+
+/** Returns: the index of the first rule that matches; -1 if no rule does. */
+int fl_rules_match(const FlRule *rules, int n, const FlRuleSubject *subject);
 
 #endif

@@ -60,7 +60,7 @@ static guint shared_depth(const FlSurvey *survey, const GArray *groups)
 }
 
 static char *make_name(const FlSurvey *survey, const FlRegionIdentity *group, guint shared,
-                       const FlRegionRule *rules)
+                       const FlRule *rules)
 {
     GString *name = g_string_new(NULL);
     if (group->rule >= 0 && !strpbrk(rules[group->rule].name, "*?")) {
@@ -97,7 +97,7 @@ static char *make_name(const FlSurvey *survey, const FlRegionIdentity *group, gu
     return g_string_free(name, FALSE);
 }
 
-char **fl_name_groups(const FlSurvey *survey, const GArray *groups, const FlRegionRule *rules)
+char **fl_name_groups(const FlSurvey *survey, const GArray *groups, const FlRule *rules)
 {
     const guint shared = shared_depth(survey, groups);
     char **names = g_new0(char *, groups->len + 1);

@@ -49,13 +49,13 @@ static const struct MatchKey {
     {"match-layer", offsetof(FlRule, match_layer)},
 };
 
-static char ***match_list(FlRule *rule, int i)
+static char ***match_list(const FlRule *rule, int i)
 {
-    return (char ***)((char *)rule + match_keys[i].offset);
+    return (char ***)((uintptr_t)rule + match_keys[i].offset);
 }
 
 /* A section without any match key is for the region that already has its name. */
-static bool is_by_name(FlRule *rule)
+static bool is_by_name(const FlRule *rule)
 {
     bool matches = rule->match_all;
     for (size_t i = 0; i < G_N_ELEMENTS(match_keys); i++)
@@ -313,6 +313,19 @@ static bool read_files(FlConfig *config, const FlRenderOptions *caller, char **p
     return good;
 }
 
+/* Sets what follows from the keys of a rule. */
+static void complete_rule(FlRule *rule)
+{
+    g_auto(FlRegionSettings) settings = {0};
+    fl_region_settings_init(&settings);
+    fl_overrides_apply(&rule->overrides, &settings);
+    rule->by_name = is_by_name(rule);
+    rule->passthrough = settings.passthrough;
+    for (int i = 0; settings.merge_with && i < rule->overrides.n; i++)
+        if (g_str_equal(rule->overrides.override[i].key, "merge-with"))
+            rule->merge_with = rule->overrides.override[i].value;
+}
+
 FlConfig *fl_config_load(const char *path, const FlRenderOptions *caller, GError **error)
 {
     g_autoptr(FlConfig) config = g_new0(FlConfig, 1);
@@ -325,7 +338,7 @@ FlConfig *fl_config_load(const char *path, const FlRenderOptions *caller, GError
                      : !read_files(config, caller, paths, NULL, error))
         return NULL;
     for (int i = 0; i < config->n_rules; i++)
-        config->rules[i].by_name = is_by_name(&config->rules[i]);
+        complete_rule(&config->rules[i]);
     return g_steal_pointer(&config);
 }
 
@@ -354,7 +367,7 @@ static void add_list(FlDigest *digest, char **list)
 void fl_config_add_rules(const FlConfig *config, FlDigest *digest)
 {
     for (int i = 0; i < config->n_rules; i++) {
-        FlRule *rule = &config->rules[i];
+        const FlRule *rule = &config->rules[i];
         const FlOverrides *own = &rule->overrides;
         for (int k = 0; k < own->n; k++)
             if (is_of_reading(own->override[k].key)) {
@@ -374,8 +387,8 @@ void fl_config_add_rules(const FlConfig *config, FlDigest *digest)
 
 static void rule_clear(FlRule *rule)
 {
-    g_free(rule->name);
-    g_free(rule->place);
+    g_free((char *)rule->name);
+    g_free((char *)rule->place);
     for (size_t i = 0; i < G_N_ELEMENTS(match_keys); i++)
         g_strfreev(*match_list(rule, (int)i));
     fl_overrides_clear(&rule->overrides);

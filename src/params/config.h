@@ -15,15 +15,18 @@
  * a CSS colour, "any", "none", "gradient" or "image".
  */
 typedef struct FlRule {
-    char *name;     // of the section; unique
-    char *place;    // FILE:LINE of the section
-    bool by_name;   // no match key
-    bool match_all; // match = *
-    char **match_fill, **match_stroke;
-    char **match_id, **match_class, **match_label;
-    char **match_layer;    // any of the names in the leaf's label path
-    float match_tolerance; // of colours, CIE76, 0..100; 0: not set
+    const char *name;  // of the section; unique
+    const char *place; // FILE:LINE of the section
+    bool by_name;      // no match key: for regions whose names, without any rule, match this one
+    bool match_all;    // match = *
+    const char *const *match_fill, *const *match_stroke;
+    const char *const *match_id, *const *match_class, *const *match_label;
+    const char *const *match_layer; // any of the names in the leaf's label path
+    float match_tolerance;          // of colours, CIE76, 0..100; 0: 1
     FlOverrides overrides;
+    /* Of the overrides, those that decide which regions there are. */
+    const char *merge_with; // the region into which this one is merged; NULL: not merged
+    FlPassthrough passthrough;
 } FlRule;
 
 /** A config in memory. Rules are in the order of the file, those of included files after its own:
