@@ -2,7 +2,7 @@
 #ifndef FLUIDY_TESTS_FLAT_H
 #define FLUIDY_TESTS_FLAT_H
 
-#include "base/cleanup.h"
+#include "base/surface.h"
 #include "drawing/drawing.h"
 #include <math.h>
 

@@ -3,7 +3,7 @@
  * and 0 if their sizes differ by more than a pixel, to which pages are rounded; psnr A.png prints
  * its size as WIDTHxHEIGHT.
  */
-#include "base/cleanup.h"
+#include "base/surface.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>

@@ -14,7 +14,7 @@
 #include "guides/outline.h"
 #include "io/picture_series.h"
 #include "io/png.h"
-#include "job/style_size.h"
+#include "job/style_cache.h"
 #include "params/params.h"
 #include "scorecard.h"
 #include "style/adapt.h"

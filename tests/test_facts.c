@@ -3,7 +3,7 @@
 #include "io/provenance.h"
 #include "job/outputs.h"
 #include "job/plan.h"
-#include "job/plan_facts.h"
+#include "job/region_plan.h"
 #include "job/resume.h"
 #include "option_values.h"
 #include "scratch.h"

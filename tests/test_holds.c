@@ -1,5 +1,5 @@
 /* Drawings that are held, and films that are repeated: how the paint lives through them. */
-#include "drawing/hold.h"
+#include "drawing/drawing.h"
 #include "io/png.h"
 #include "render/loop.h"
 #include "scratch.h"

@@ -2,7 +2,7 @@
 #include "params/options.h"
 
 #include "job/plan.h"
-#include "job/plan_facts.h"
+#include "job/region_plan.h"
 #include "option_values.h"
 #include "params/config.h"
 #include "scratch.h"

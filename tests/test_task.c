@@ -1,4 +1,4 @@
-#include "base/task.h"
+#include "base/schedule.h"
 #include <fluidy/error.h>
 
 static bool count(void *data, GError **error)

@@ -3,7 +3,7 @@
 #ifndef FLUIDY_BASE_ALLOC_H
 #define FLUIDY_BASE_ALLOC_H
 
-#include "base/headroom.h"
+#include "base/memory.h"
 #include <fluidy/error.h>
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,7 +1,9 @@
-/* The memory that the process may use. */
+/* The memory that the process may use, and the room that is left. */
 #ifndef FLUIDY_BASE_MEMORY_H
 #define FLUIDY_BASE_MEMORY_H
 
+#include <fluidy/error.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 /**
@@ -23,5 +25,23 @@ void fl_memory_map_planes(void);
 /** For work with many small blocks: threads that begin from here on have heaps of their own, for
  * one heap lets one thread in at a time. The environment's MALLOC_ARENA_MAX stays. */
 void fl_memory_separate_heaps(void);
+
+/* ---- headroom -------------------------------------------------------------------------------- */
+
+/**
+ * Checks that there is memory for the small allocations of GLib, librsvg and OpenMP, and for the
+ * stacks of all threads. Frames and fields, which are far larger, do not count: fl_alloc() reports
+ * their failure. Call it when the number of threads is known, before files are read.
+ *
+ * Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_headroom_check(GError **error);
+
+/**
+ * Returns: true unless the address space was limited at the first call and too little is left for
+ * small allocations. In that case fl_alloc() fails, since only fl_alloc() can report the lack of
+ * memory.
+ */
+bool fl_headroom_left(void);
 
 #endif

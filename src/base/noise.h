@@ -1,7 +1,9 @@
-/* Smooth noise as a function of place, from +, * and a hash only: the same bits on any CPU. */
+/* Smooth noise as a function of place, from +, * and a hash only, and fibres: the same bits on any
+ * CPU. */
 #ifndef FLUIDY_BASE_NOISE_H
 #define FLUIDY_BASE_NOISE_H
 
+#include "base/rng.h"
 #include <stdint.h>
 
 /** Gradient noise with lattice cells of side 1: mean 0, mostly within -1 … 1, always within -2 … 2.
@@ -24,5 +26,19 @@ void fl_noise_row(uint64_t key, const float *x, const float *y, int n, float *no
 /** The same for fl_noise_octaves(). */
 void fl_noise_octaves_row(uint64_t key, const float *x, const float *y, int n, int octaves,
                           float gain, float *noise);
+
+/** The shape of fibres. */
+typedef struct FlFibre {
+    float length_px; // mean
+    float curl;      // rate of turning; 1: like paper fibres
+    float scale;     // enlargement of a fibre, whose width is about a px at 1
+} FlFibre;
+
+/**
+ * Draws a fibre from a place on: each pixel of the width * height grid gets 0..1 by how near the
+ * middle of the fibre it is, where that is more than it has. The place may be beyond the grid.
+ */
+void fl_fibre_draw(float *grid, int width, int height, float x, float y, const FlFibre *fibre,
+                   FlRng *rng);
 
 #endif

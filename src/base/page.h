@@ -1,6 +1,9 @@
-/* Defines the scale of paint on a page. */
+/* The scale of paint on a page, and the tooth of its paper, which paint and pencils catch on. */
 #ifndef FLUIDY_BASE_PAGE_H
 #define FLUIDY_BASE_PAGE_H
+
+#include <stddef.h>
+#include <stdint.h>
 
 /** Longer side of a page on which a px of a style, and of a sheet of paper, is a px; px. */
 #define FL_PAGE_PX 1000
@@ -15,5 +18,13 @@ static inline float fl_page_scale(int width, int height)
     const float scale = (float)(width > height ? width : height) / FL_PAGE_PX;
     return scale > .25f ? scale : .25f;
 }
+
+#define FL_TOOTH_ONE 57 // a height of one standard deviation
+
+/** The tooth below a frame; borrowed. */
+typedef struct FlTooth {
+    const int8_t *height; // FL_TOOTH_ONE is a standard deviation; NULL: flat
+    size_t stride;        // of its rows
+} FlTooth;
 
 #endif

@@ -1,9 +1,11 @@
-/* Cairo's image surfaces: making them, and copying bytes in and out. */
+/* Cairo's image surfaces: making them, and copying bytes in and out. g_autoptr for the types of
+ * cairo and librsvg. */
 #ifndef FLUIDY_BASE_SURFACE_H
 #define FLUIDY_BASE_SURFACE_H
 
-#include "base/cleanup.h"
+#include <cairo.h>
 #include <fluidy/error.h>
+#include <librsvg/rsvg.h>
 #include <stdint.h>
 
 /** A cleared image surface; NULL with FL_ERROR_LIMIT or FL_ERROR_NO_MEMORY. */
@@ -21,5 +23,9 @@ cairo_surface_t *fl_surface_of(const uint8_t *pixels, int channels, int width, i
  * NULL with FL_ERROR_NO_MEMORY.
  */
 uint8_t *fl_surface_bytes(cairo_surface_t *surface, int channels, int height, GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(cairo_t, cairo_destroy)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(RsvgHandle, g_object_unref)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(cairo_surface_t, cairo_surface_destroy)
 
 #endif

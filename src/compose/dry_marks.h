@@ -3,11 +3,11 @@
 #ifndef FLUIDY_COMPOSE_DRY_MARKS_H
 #define FLUIDY_COMPOSE_DRY_MARKS_H
 
+#include "base/page.h"
 #include "base/rect.h"
-#include "base/tooth.h"
 #include "compose/directions.h"
 #include "drawing/drawing.h"
-#include "params/medium.h"
+#include "params/region_settings.h"
 
 /** The marks of a region in a frame. */
 typedef struct FlMarking {

@@ -3,7 +3,7 @@
 #define FLUIDY_COMPOSE_KNOCKOUT_H
 
 #include "base/rect.h"
-#include "params/medium.h"
+#include "params/region_settings.h"
 
 #include <fluidy/error.h>
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 #include "compose/painted_region.h"
 
 #include "base/alloc.h"
-#include "base/state_bytes.h"
+#include "base/compress.h"
 
 /* Colours and alpha, in one piece. */
 static FlSpan span_of(const FlPaintedRegion *painted, uint8_t *picture)

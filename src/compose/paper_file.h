@@ -2,7 +2,7 @@
 #ifndef FLUIDY_COMPOSE_PAPER_FILE_H
 #define FLUIDY_COMPOSE_PAPER_FILE_H
 
-#include "base/tooth.h"
+#include "base/page.h"
 #include "compose/paper_height.h"
 #include <fluidy/error.h>
 

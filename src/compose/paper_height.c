@@ -1,7 +1,6 @@
 #include "compose/paper_height.h"
 
 #include "base/curves.h"
-#include "base/fibre.h"
 #include "base/noise.h"
 #include <glib.h>
 #include <math.h>

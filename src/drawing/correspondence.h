@@ -3,6 +3,7 @@
 #define FLUIDY_DRAWING_CORRESPONDENCE_H
 
 #include "drawing/outlines.h"
+#include "svg/geometry.h"
 
 typedef enum FlMotionKind {
     FL_MOTION_NONE,       // unknown: not parsed, or a jump
@@ -49,5 +50,41 @@ FlCorrespondence *fl_correspond(const FlTwoFrames *frames);
 void fl_correspondence_free(FlCorrespondence *correspondence); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlCorrespondence, fl_correspondence_free)
+
+/** Points of a leaf in both frames, px, at the same parameters. */
+typedef struct FlSamples {
+    int n;
+    FlPoint *before, *now;
+} FlSamples;
+
+/** shift is by subpath of b, as in FlCorrespondence; a and b have the same structure. */
+void fl_samples_take(FlSamples *samples, const FlOutlines *before, const FlGeometry *a,
+                     const FlOutlines *now, const FlGeometry *b, const int32_t *shift);
+
+void fl_samples_clear(FlSamples *samples);
+
+/** The place of a segment's point in the frame before, px; sub and cubic are that frame's. */
+FlPoint fl_same_point(const FlSubpath *sub, const FlCubic *cubic, const FlAffine *ctm, int shift,
+                      int segment, double t);
+
+double fl_distance2(FlPoint a, FlPoint b);
+FlPoint fl_mean_point(const FlPoint *p, int n);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlSamples, fl_samples_clear)
+
+typedef struct FlLeafMeasure {
+    double x0, y0, x1, y1; // box of its outline, px; empty: x1 < x0
+    uint64_t structure;    // hash of its subpaths' lengths
+} FlLeafMeasure;
+
+/** By leaf; to be freed with g_free(). */
+FlLeafMeasure *fl_measure_leaves(const FlOutlines *outlines);
+
+double fl_measure_diagonal(const FlLeafMeasure *m);
+
+/** Gives round leaves that rest, move or grow the turn of two or more leaves of their group that
+ * lie inside them in both frames, if these agree to half a pixel. */
+void fl_turn_round_hosts(const FlTwoFrames *frames, const FlLeafMeasure *before,
+                         const FlLeafMeasure *now, FlCorrespondence *correspondence);
 
 #endif

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_DRAWING_DRAWING_H
 #define FLUIDY_DRAWING_DRAWING_H
 
+#include "base/error.h"
 #include "base/warnings.h"
 #include "drawing/sequence.h"
 #include "params/config.h"
@@ -183,5 +184,34 @@ void fl_region_colour(const FlDrawing *drawing, int region, uint8_t rgb[3]);
 void fl_drawing_free(FlDrawing *drawing); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlDrawing, fl_drawing_free)
+
+/**
+ * The draw list that a frame shows: that of the frame that is held. A region with a hold of its own
+ * has the draws of the frame in which it was last painted, at the place in the stack of its present
+ * draws, else above the region that it lay on.
+ *
+ * hand: NULL: plain. hold: of the film, frames. hold_of: of each region; the film's where it has
+ * none of its own. Returns: to be freed with fl_draw_list_free(); NULL with an error.
+ */
+FlDrawList *fl_hold_draw_list(const FlDrawing *drawing, const FlHand *hand, int hold,
+                              const int *hold_of, int frame, GError **error);
+
+/**
+ * Opens the drawing of options, which fl_config_complete() has completed, with the config's rules.
+ *
+ * Warnings, also of sections that match no region, go to the caller.
+ *
+ * Returns: to be freed with fl_drawing_free(); NULL with an error as of fl_drawing_open(), or with
+ * FL_ERROR_INPUT if there was a warning and the options are strict.
+ */
+FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfig *config,
+                                   const FlCaller *caller, GError **error);
+
+/**
+ * The frames that the options name, found by their files' names; the files are not read.
+ *
+ * Returns: to be freed with fl_sequence_free(); NULL with FL_ERROR_USAGE or FL_ERROR_INPUT.
+ */
+FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **error);
 
 #endif

@@ -1,7 +1,7 @@
-#include "drawing/open_drawing.h"
+#include "drawing/drawing.h"
 
 #include "base/error.h"
-#include "base/headroom.h"
+#include "base/memory.h"
 #include "base/suggest.h"
 #include <string.h>
 

@@ -1,7 +1,6 @@
-#include "drawing/leaf_measure.h"
 
 #include "base/modes.h"
-#include "drawing/samples.h"
+#include "drawing/correspondence.h"
 #include <math.h>
 #include <string.h>
 

@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "io/frame_range.h"
 #include "io/pattern.h"
 #include "worker/workers.h"
 #include <fnmatch.h>

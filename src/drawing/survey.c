@@ -2,7 +2,7 @@
 
 #include "base/limits.h"
 #include "svg/normalise.h"
-#include "worker/survey_frame.h"
+#include "worker/verbs.h"
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "guides/motion.h"
 
 #include "base/alloc.h"
-#include "drawing/samples.h"
+#include "drawing/correspondence.h"
 #include "guides/connected_parts.h"
 #include "guides/cover.h"
 #include "guides/guides.h"

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/surface.h"
-#include "drawing/open_drawing.h"
+#include "drawing/drawing.h"
 #include "io/pattern.h"
 #include "io/png.h"
 #include "job/plan.h"

@@ -1,4 +1,5 @@
-/* Files that appear whole or not at all. */
+/* Files that appear whole or not at all, and locks, so that two processes never write the same file
+ * at the same time. */
 #ifndef FLUIDY_IO_ATOMIC_FILE_H
 #define FLUIDY_IO_ATOMIC_FILE_H
 
@@ -46,5 +47,20 @@ void fl_atomic_clear(FlAtomicFile *file);
 void fl_output_error(GError **error, const char *path, int errno_value);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlAtomicFile, fl_atomic_clear)
+
+/* ---- locks ----------------------------------------------------------------------------------- */
+
+/**
+ * Opens or makes a file in an existing folder and locks it where files can be locked; the
+ * lock ends with the descriptor or the process.
+ *
+ * what names the output in the message: "what: another run is writing it".
+ * Returns: a descriptor to be closed; -1 with FL_ERROR_EXISTS set: another process has the lock; -1
+ * with errno alone: the file cannot be made.
+ */
+int fl_lock_take(const char *path, const char *what, GError **error);
+
+/** The same with a folder. */
+int fl_lock_take_folder(const char *path, const char *what, GError **error);
 
 #endif

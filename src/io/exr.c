@@ -6,8 +6,8 @@
 #include "base/json.h"
 #include "base/schedule.h"
 #include "io/cryptomatte.h"
-#include "io/formats.h"
 #include "io/provenance.h"
+#include "io/sink.h"
 
 #include <OpenEXR/openexr.h>
 #include <libdeflate.h>

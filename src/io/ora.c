@@ -1,7 +1,7 @@
 /* OpenRaster files [freedesktop.org, OpenRaster 0.0.5], which Krita, MyPaint and GIMP open. */
 #include "base/error.h"
-#include "io/formats.h"
 #include "io/png.h"
+#include "io/sink.h"
 
 #include <string.h>
 #include <zip.h>

@@ -1,6 +1,6 @@
 /* PNG files, sums of pixels, and sinks that write no files. */
-#include "io/formats.h"
 #include "io/png.h"
+#include "io/sink.h"
 
 static bool png_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
 {

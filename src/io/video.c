@@ -1,7 +1,7 @@
 /* Films, through the ffmpeg program. */
 #include "base/error.h"
 #include "io/child_process.h"
-#include "io/formats.h"
+#include "io/sink.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -4,7 +4,7 @@
 #include "base/limits.h"
 #include "base/memory.h"
 #include "base/page.h"
-#include "drawing/open_drawing.h"
+#include "drawing/drawing.h"
 #include "io/pattern.h"
 #include "job/paint_files.h"
 #include "keep/sealed.h"

@@ -1,5 +1,5 @@
-#include "job/plan_facts.h"
 #include "job/plan.h"
+#include "job/region_plan.h"
 
 #include "base/build_id.h"
 #include "io/pattern.h"

@@ -1,7 +1,7 @@
 #include "base/error.h"
 #include "job/plan.h"
 
-#include "drawing/open_drawing.h"
+#include "drawing/drawing.h"
 #include "io/pattern.h"
 #include "io/picture_file.h"
 #include "job/resume.h"

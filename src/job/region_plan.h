@@ -7,7 +7,10 @@
 #include "cover/surround.h"
 #include "drawing/drawing.h"
 #include "job/engine.h"
+#include "keep/facts.h"
+#include "keep/inputs.h"
 #include "params/keys.h"
+#include "params/options.h"
 
 /** The plan for painting one region. */
 typedef struct FlRegionPlan {
@@ -115,5 +118,21 @@ bool fl_shapes_rasterise(FlShapes *shapes, const FlCaller *caller, GError **erro
 
 /** Looks which regions are hidden, without masks: it draws as many frames as show all regions. */
 bool fl_shapes_find_hidden(FlShapes *shapes, const FlCaller *caller, GError **error);
+
+/**
+ * Adds every option of the table that decides frames, by its value. object: the
+ * struct of the scope; region: its name, or NULL.
+ */
+void fl_facts_add_options(FlFacts *facts, FlOptionScope scope, const void *object,
+                          const char *region);
+
+/**
+ * All that decides a region's paint but its guides: engine, settings, style, seed, sizes and this
+ * build of the program. inputs: knows the digests of styles. To be freed.
+ */
+FlFacts *fl_region_facts(const FlShapes *shapes, const FlRegionPlan *region, FlInputs *inputs);
+
+/** Adds the flow files of shapes->painted[p], whose guides they decide as well. */
+void fl_region_facts_add_flow(FlFacts *facts, const FlShapes *shapes, int p, FlInputs *inputs);
 
 #endif

@@ -1,8 +1,8 @@
 #include "job/resume.h"
 
 #include "base/error.h"
-#include "drawing/open_drawing.h"
-#include "io/lock.h"
+#include "drawing/drawing.h"
+#include "io/atomic_file.h"
 #include "io/pattern.h"
 #include "io/provenance.h"
 #include "job/outputs.h"

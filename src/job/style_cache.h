@@ -4,11 +4,12 @@
 
 #include "base/error.h"
 #include "compose/painted_region.h"
+#include "style/style_folder.h"
 
 /** Owns its style instances until _free. */
 typedef struct FlStyleCache FlStyleCache;
 
-/** makes: styles are made larger, see style_size.h. */
+/** makes: styles are made larger, see fl_style_load_for(). */
 FlStyleCache *fl_style_cache_new(bool makes);
 
 /** Sets the caller, who is told of styles that are made; before, there is none. */
@@ -38,5 +39,24 @@ double fl_style_cache_bytes(const FlStyleCache *cache);
 bool fl_style_cache_seek(FlStyleCache *cache, int frame, int n_frames, bool loops, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyleCache, fl_style_cache_free)
+
+/* ---- sizes of styles ------------------------------------------------------------------------- */
+
+/**
+ * Reads a style for frames that are scale * texture_px times as large as its pictures; scale 0: the
+ * factor that the style suggests. A small page, of texture_px below 1, leaves the frames' shorter
+ * side at least_px, or at its own size.
+ *
+ * For a factor above 1, a style with a recipe is simulated at 2 or 4 times its size. The result is
+ * kept in the user's cache folder, under a name made of recipe, size and version, and is made once
+ * even by two processes. makes: false in a dry run, which does not simulate.
+ *
+ * *factor becomes the factor by which the frames still have to be scaled; it is above 1 only if no
+ * larger pictures can be made.
+ * Returns: to be freed with fl_style_free(); NULL with an error of fl_style_load(), of the recipe,
+ * or FL_ERROR_INTERRUPTED set.
+ */
+FlStyle *fl_style_load_for(const char *folder, float scale, float texture_px, float least_px,
+                           bool makes, FlCaller caller, float *factor, GError **error);
 
 #endif

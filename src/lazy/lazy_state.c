@@ -1,7 +1,7 @@
 #include "lazy/lazy_state.h"
 
 #include "base/alloc.h"
-#include "base/state_bytes.h"
+#include "base/compress.h"
 
 typedef struct Header {
     int32_t frame, valid, width, height;

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "params/key_file.h"
+#include "params/key_table.h"
 #include "params/options.h"
 #include "params/text.h"
 

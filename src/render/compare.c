@@ -5,7 +5,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/suggest.h"
-#include "drawing/open_drawing.h"
+#include "drawing/drawing.h"
 #include "io/atomic_file.h"
 #include "io/contact_sheet.h"
 #include "io/pattern.h"

@@ -1,10 +1,10 @@
 #include "render/frame_writer.h"
 
 #include "base/error.h"
-#include "io/formats.h"
 #include "io/pattern.h"
 #include "io/png.h"
 #include "io/provenance.h"
+#include "io/sink.h"
 #include "job/paint_files.h"
 
 #define SHEET "paper_sheet" // region names have no underscore

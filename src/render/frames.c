@@ -6,7 +6,7 @@
 #include "base/page.h"
 #include "base/schedule.h"
 #include "compose/composite.h"
-#include "drawing/hold.h"
+#include "drawing/drawing.h"
 #include "guides/half_guides.h"
 #include "inspect/dump.h"
 #include "io/picture_file.h"

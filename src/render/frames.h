@@ -2,7 +2,7 @@
 #ifndef FLUIDY_RENDER_FRAMES_H
 #define FLUIDY_RENDER_FRAMES_H
 
-#include "base/task.h"
+#include "base/schedule.h"
 #include "compose/composite.h"
 #include "inspect/report.h"
 #include "job/plan.h"

@@ -4,7 +4,7 @@
 #define FLUIDY_RENDER_REUSE_H
 
 #include "guides/guides.h"
-#include "job/plan_facts.h"
+#include "job/region_plan.h"
 #include "keep/store.h"
 
 /**

@@ -1,6 +1,6 @@
 /* Checks a style: reports what was read and measured, and what will paint badly. */
 #include "base/error.h"
-#include "base/headroom.h"
+#include "base/memory.h"
 #include "params/text.h"
 #include "style/check_sheet.h"
 #include "style/estimate.h"

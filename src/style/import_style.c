@@ -1,5 +1,5 @@
 /* Imports a recording as a style: read, find paper and paint, stabilise, flatten, write. */
-#include "base/headroom.h"
+#include "base/memory.h"
 #include "io/ffmpeg.h"
 #include "params/text.h"
 #include "style/border.h"

@@ -2,7 +2,6 @@
 #ifndef FLUIDY_STYLE_STYLE_FOLDER_H
 #define FLUIDY_STYLE_STYLE_FOLDER_H
 
-#include "params/medium.h"
 #include "params/region_settings.h"
 #include <fluidy/error.h>
 #include <stdbool.h>

@@ -1,7 +1,7 @@
 #include "style/write_style.h"
 
 #include "base/error.h"
-#include "io/lock.h"
+#include "io/atomic_file.h"
 #include "io/png.h"
 #include "style/manifest.h"
 

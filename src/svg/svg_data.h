@@ -2,7 +2,7 @@
 #ifndef FLUIDY_SVG_SVG_DATA_H
 #define FLUIDY_SVG_SVG_DATA_H
 
-#include "base/cleanup.h"
+#include "base/surface.h"
 #include "svg/geometry.h"
 #include "svg/leaf_paint.h"
 #include <fluidy/error.h>

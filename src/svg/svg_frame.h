@@ -2,7 +2,7 @@
 #ifndef FLUIDY_SVG_SVG_FRAME_H
 #define FLUIDY_SVG_SVG_FRAME_H
 
-#include "base/cleanup.h"
+#include "base/surface.h"
 #include "svg/geometry.h"
 #include "svg/leaf_paint.h"
 #include <fluidy/render.h>

@@ -1,8 +1,8 @@
 #include "synth/synth_state.h"
 
 #include "base/alloc.h"
+#include "base/compress.h"
 #include "base/schedule.h"
-#include "base/state_bytes.h"
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,11 +1,11 @@
 #include "transport/carried_ink.h"
 
 #include "base/alloc.h"
+#include "base/compress.h"
 #include "base/curves.h"
 #include "base/density.h"
 #include "base/rng.h"
 #include "base/schedule.h"
-#include "base/state_bytes.h"
 #include "transport/material_layers.h"
 #include <assert.h>
 #include <math.h>

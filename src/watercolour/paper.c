@@ -1,6 +1,5 @@
 /* Paper from noise and fibres: relief, capacity, permeability. No scanned data, no licence. */
 #include "base/curves.h"
-#include "base/fibre.h"
 #include "base/noise.h"
 #include "base/rng.h"
 #include "watercolour/sheet.h"

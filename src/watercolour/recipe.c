@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/limits.h"
-#include "params/key_file.h"
+#include "params/key_table.h"
 #include "style/manifest.h"
 
 #include <string.h>

@@ -2,8 +2,8 @@
 #include "watercolour/simulate.h"
 
 #include "base/alloc.h"
-#include "base/headroom.h"
 #include "base/limits.h"
+#include "base/memory.h"
 #include "style/style_folder.h"
 #include "style/write_style.h"
 #include "watercolour/brush.h"

@@ -2,7 +2,7 @@
 #include "wet/wet.h"
 
 #include "base/alloc.h"
-#include "base/state_bytes.h"
+#include "base/compress.h"
 #include <math.h>
 
 /** Of a region. */

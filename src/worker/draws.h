@@ -2,8 +2,8 @@
 #ifndef FLUIDY_WORKER_DRAWS_H
 #define FLUIDY_WORKER_DRAWS_H
 
+#include "base/page.h"
 #include "base/rect.h"
-#include "base/tooth.h"
 #include "params/region_settings.h"
 #include "svg/svg_frame.h"
 #include <fluidy/error.h>

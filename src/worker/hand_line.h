@@ -2,8 +2,8 @@
 #ifndef FLUIDY_WORKER_HAND_LINE_H
 #define FLUIDY_WORKER_HAND_LINE_H
 
+#include "base/page.h"
 #include "base/rect.h"
-#include "base/tooth.h"
 #include "params/region_settings.h"
 #include "worker/line_path.h"
 #include <fluidy/error.h>

@@ -1,4 +1,4 @@
-#include "worker/survey_frame.h"
+#include "worker/verbs.h"
 
 #include "svg/normalise.h"
 #include "worker/probe.h"

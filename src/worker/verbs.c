@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "svg/geometry.h"
-#include "worker/survey_frame.h"
 #include <string.h>
 
 static void forget_measured(FlServant *servant)

@@ -1,6 +1,5 @@
 /* Names with frame numbers, and ranges of numbers. */
 #include "fuzz.h"
-#include "io/frame_range.h"
 #include "io/pattern.h"
 
 static void as_input(const char *text)
