@@ -2,10 +2,12 @@
 #include "bundled_style.h"
 #include "transport/flow_map.h"
 #include "transport/tile.h"
+#include <fluidy/style.h>
 
 #include <glib/gstdio.h>
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 static void expect_refusal(const char *folder, const char *ini, const char *says)
 {
@@ -28,7 +30,6 @@ static void bad_style_folders_are_named(void)
     expect_refusal(folder, "[transport]\n", "no such file");
     g_assert_true(fl_tile_save(potential, 64, folder, NULL));
     expect_refusal(folder, "[transport]\nsize = 128\n", "64x64 pixels: expected 128x128");
-    expect_refusal(folder, "[transport]\nmatch = swirl\n", "style.ini:2: match = swirl: expected");
     expect_refusal(folder, "[transport]\ntapir = 3\n", "style.ini:2: unknown key");
     g_assert_true(g_file_set_contents(png, "no picture", -1, NULL));
     expect_refusal(folder, "[transport]\nsize = 64\n", "transport.png");
@@ -89,6 +90,42 @@ static void bundled_ink_does_not_fold(void)
             g_assert_cmpfloat(folds_of(styles[s], scales[k]), <, 0.05);
 }
 
+/* The mean step of the ink from pixel to pixel along rows, in columns first + 1 … last. */
+static double step_of(const FlFlowMap *map, int first, int last)
+{
+    double sum = 0;
+    for (int y = 0; y < map->height; y++)
+        for (int x = first; x < last; x++) {
+            const float *row = map->jacobian + y * map->width;
+            sum += fabs((double)row[(x + 1) % map->width] - (double)row[x]);
+        }
+    return sum / map->height / (last - first);
+}
+
+static void the_sides_of_a_larger_picture_meet(void)
+{
+    enum { n = 256 };
+    g_autofree char *from = bundled_style("14"), *folder = g_dir_make_tmp("transport-XXXXXX", NULL);
+    g_autofree char *ini = g_build_filename(folder, "style.ini", NULL);
+    g_autofree char *pictures = g_build_filename(from, "frames", NULL);
+    g_autofree char *frames = g_build_filename(folder, "frames", NULL);
+    g_autofree char *png = g_build_filename(folder, "transport.png", NULL);
+    g_assert_cmpint(symlink(pictures, frames), ==, 0);
+    g_assert_true(g_file_set_contents(ini, "[transport]\neffort = 0.3\n", -1, NULL));
+    g_assert_true(fl_style_transport(folder, false, NULL, NULL, NULL));
+    g_autoptr(FlTile) tile = fl_tile_load(folder, 1, NULL);
+    g_auto(FlFlowMap) map = {0};
+    g_autofree float *velocity = g_new(float, 2 * n * n);
+    g_assert_true(tile && fl_flow_map_init(&map, n, n, true, NULL));
+    for (int p = 0; p < n * n; p++)
+        fl_tile_gradient(tile, (float)(p % n), (float)(p / n), velocity + 2 * p);
+    fl_flow_map_run(&map, velocity);
+    const double across = step_of(&map, n - 3, n + 2), within = step_of(&map, 0, n - 1);
+    g_test_message("steps of %.4f across the sides, of %.4f within", across, within);
+    g_assert_cmpfloat(across, <, 1.2 * within);
+    g_unlink(png), g_unlink(ini), g_unlink(frames), g_rmdir(folder);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -96,5 +133,6 @@ int main(int argc, char **argv)
     TEST(bad_style_folders_are_named);
     TEST(a_tile_is_read_as_it_was_written);
     TEST(bundled_ink_does_not_fold);
+    TEST(the_sides_of_a_larger_picture_meet);
     return g_test_run();
 }

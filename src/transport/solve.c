@@ -2,12 +2,8 @@
 
 #include "base/alloc.h"
 #include "base/curves.h"
-#include "base/rng.h"
 #include <math.h>
 #include <string.h>
-
-#define SAMPLES 1024
-#define DIRECTIONS 24
 
 // Weights of what is held small beside the loss: how the velocity changes, its size, folds.
 #define W_CHANGE 2e-3f
@@ -15,29 +11,18 @@
 #define W_FOLD 1.0f
 #define FOLD_FROM 0.05f // determinants below this
 
-/* Part of a solution: which levels count, which grids move. Bit l of `grids` is grid l. */
+/* Part of a solution: which grids move. Bit l of `grids` is grid l. */
 typedef struct Stage {
     int iterations;
-    unsigned levels, grids;
+    unsigned grids;
     float step;   // of a node, px² per px of its grid
     bool settles; // the step falls to a seventh
 } Stage;
 
-#define LEVELS(a, b) ((2u << (b)) - (1u << (a)))
-
-static const Stage patch_stages[] = {
-    {40, LEVELS(2, 4), LEVELS(2, 3), 0.12f, false},
-    {60, LEVELS(1, 3), LEVELS(1, 3), 0.12f, false},
-    {130, LEVELS(0, 3), LEVELS(0, 3), 0.12f, true},
-    {0},
-};
-
-/* On the way to a picture, pixel by pixel, no levels count. */
-static const Stage picture_stages[] = {
-    {60, 0, LEVELS(2, 3), 0.25f, false},
-    {60, 0, LEVELS(1, 3), 0.15f, false},
-    {140, 0, LEVELS(0, 3), 0.10f, true},
-    {0},
+static const Stage stages[] = {
+    {60, 8 | 4, 0.25f, false},
+    {60, 8 | 4 | 2, 0.15f, false},
+    {140, 8 | 4 | 2 | 1, 0.10f, true},
 };
 
 /* Adam's moments of one grid [Kingma15]. */
@@ -102,19 +87,6 @@ static bool fresh_moments(Solver *solver, GError **error)
     return true;
 }
 
-/* Adds a small random start, which breaks the symmetry of flat ink. */
-static void add_noise(FlPotential *potential, uint64_t key)
-{
-    for (int l = 0; l < FL_POTENTIAL_GRIDS; l++)
-        for (size_t i = 0; i < fl_potential_nodes(potential, l); i++) {
-            FlRng rng = {fl_key(fl_key(key, (uint64_t)l), i)};
-            float sum = -2;
-            for (int k = 0; k < 4; k++)
-                sum += fl_rng_float(&rng);
-            potential->grid[l][i] += 0.035f * sum;
-        }
-}
-
 /* Adds what the velocity's size and change cost to the derivative. */
 static void add_smoothness(Solver *solver)
 {
@@ -164,25 +136,15 @@ static float picture_loss(Solver *solver)
     return (float)(loss / (double)n);
 }
 
-static float patches_loss(Solver *solver, unsigned levels, uint64_t key, GError **error)
-{
-    const FlTransportProblem *problem = solver->problem;
-    return fl_sliced_loss(problem->style, solver->map.jacobian, problem->width, problem->height,
-                          levels, SAMPLES, DIRECTIONS, key, solver->by_jacobian, error);
-}
-
 /* The loss of the potential as it is; its derivative by node into by_node. */
-static float derive(Solver *solver, unsigned levels, uint64_t key, GError **error)
+static float derive(Solver *solver, GError **error)
 {
-    const FlTransportProblem *problem = solver->problem;
     fl_potential_sum(solver->potential, solver->sum);
     fl_velocity(&solver->map, solver->sum, solver->velocity);
     fl_flow_map_run(&solver->map, solver->velocity);
-    const float loss =
-        problem->picture ? picture_loss(solver) : patches_loss(solver, levels, key, error);
+    const float loss = picture_loss(solver);
     add_folds(solver);
-    if (loss < 0 ||
-        !fl_flow_map_adjoint(&solver->map, solver->by_jacobian, solver->by_velocity, error))
+    if (!fl_flow_map_adjoint(&solver->map, solver->by_jacobian, solver->by_velocity, error))
         return -1;
     add_smoothness(solver);
     fl_velocity_adjoint(&solver->map, solver->by_velocity, solver->sum);
@@ -228,10 +190,10 @@ static bool run_stage(Solver *solver, const Stage *stage, int n, Report *report,
         return false;
     for (int k = 0; k < n; k++) {
         const float fall = fl_smooth((float)k / (float)n);
-        const float loss =
-            derive(solver, stage->levels, fl_key(problem->key, (uint64_t)++report->done), error);
+        const float loss = derive(solver, error);
         if (loss < 0)
             return false;
+        report->done++;
         step(solver, stage->grids,
              problem->pace * stage->step * (stage->settles ? 1 - 0.85f * fall : 1));
         if (report->progress && !report->progress(report->data, report->done, report->total, loss))
@@ -247,12 +209,11 @@ bool fl_transport_solve(const FlTransportProblem *problem, float effort, FlPoten
     Report report = {progress, data, 0, 0};
     if (!solver_init(&solver, problem, potential, error))
         return false;
-    add_noise(potential, problem->key);
-    const Stage *stages = problem->picture ? picture_stages : patch_stages;
-    for (const Stage *s = stages; s->iterations; s++)
-        report.total += (int)((float)s->iterations * effort);
-    for (const Stage *s = stages; s->iterations; s++)
-        if (!run_stage(&solver, s, (int)((float)s->iterations * effort), &report, error))
+    for (size_t s = 0; s < G_N_ELEMENTS(stages); s++)
+        report.total += (int)((float)stages[s].iterations * effort);
+    for (size_t s = 0; s < G_N_ELEMENTS(stages); s++)
+        if (!run_stage(&solver, &stages[s], (int)((float)stages[s].iterations * effort), &report,
+                       error))
             return false;
     return true;
 }

@@ -1,25 +1,21 @@
-/* Finds the potential that moves a density so that its patches look like a style's. */
+/* Finds the potential that moves ink, which lies evenly, so that it makes a picture. */
 #ifndef FLUIDY_TRANSPORT_SOLVE_H
 #define FLUIDY_TRANSPORT_SOLVE_H
 
 #include "transport/flow_map.h"
 #include "transport/potential.h"
-#include "transport/sliced.h"
 #include <fluidy/style.h>
 
 /** The problem to be solved, on a torus. */
 typedef struct FlTransportProblem {
-    int width, height; // px, multiples of FL_POTENTIAL_COARSEST
-    const FlSliced *style;
-    // Ink is to look like this, width * height of mean 1; NULL: like the style.
-    const float *picture;
+    int width, height;    // px, multiples of FL_POTENTIAL_COARSEST
+    const float *picture; // densities, width * height of mean 1
     float pace; // factor on the steps: 1 draws clean bands, 3 reaches the wide features of a wash
-    uint64_t key;
 } FlTransportProblem;
 
 /**
  * Solves from a zero potential, coarse grids and levels first; `effort` scales the number of
- * iterations (1: some 230). progress may be NULL.
+ * iterations (1: 260). progress may be NULL.
  *
  * potential: made by the caller in the problem's size. Returns: false with FL_ERROR_NO_MEMORY or
  * FL_ERROR_INTERRUPTED set.

@@ -2,12 +2,14 @@
 #include "transport/tile.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "base/density.h"
 #include "style/style_folder.h"
 #include <fluidy/style.h>
 #include <math.h>
 
 #define MOST_DENSITY 4 // times the mean
+#define MOST_FADED 4   // of a tile's side: this share of it
 
 /* Divides by the mean; what is left is 0 … MOST_DENSITY. */
 static bool normalise(float *density, size_t n, const char *folder, GError **error)
@@ -55,36 +57,58 @@ static void keep_potential(const FlPotential *potential, size_t n, float *sum)
         sum[i] -= (float)(mean / (double)n);
 }
 
-/* The picture itself, if its pixels are to be matched. */
-static bool pixels_of(const FlStyle *style, const FlTransportStyle *wanted, const float *density,
-                      const float **pixels, GError **error)
+/* Cuts the middle out of rows of densities of mean 1, so that their sides meet: what lies beyond
+ * the end fades into the beginning, and keeps its contrast. step: from pixel to pixel. */
+static void fold(const float *in, int length, size_t step, int size, float *out, size_t out_step)
 {
-    *pixels = wanted->match == FL_MATCH_PICTURE ? density : NULL;
-    if (!*pixels || (style->width == wanted->size && style->height == wanted->size))
-        return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
-                "%s: the first frame is %dx%d px; expected %dx%d, the size of the tile that is to "
-                "match it",
-                style->path, style->width, style->height, wanted->size, wanted->size);
-    return false;
+    const int over = MIN(length - size, size / MOST_FADED), from = (length - size - over) / 2;
+    for (int i = 0; i < size; i++) {
+        const float here = in[(size_t)(from + i) * step];
+        out[(size_t)i * out_step] = here;
+        if (i >= over)
+            continue;
+        const float beyond = in[(size_t)(from + i + size) * step];
+        const float w = fl_smooth(((float)i + 0.5f) / (float)over);
+        const float sum = w * (here - 1) + (1 - w) * (beyond - 1);
+        out[(size_t)i * out_step] = fmaxf(1 + sum / sqrtf(w * w + (1 - w) * (1 - w)), 0);
+    }
+}
+
+/* The densities of a tile: those of the picture, whose sides meet if it is as large as the tile.
+ * Returns: to be freed. */
+static float *tile_ink(const FlStyle *style, int size, GError **error)
+{
+    const int width = style->width, height = style->height;
+    const size_t n = (size_t)size * (size_t)size;
+    if (width < size || height < size) {
+        g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
+                    "%s: the first frame is %dx%d px; expected at least %dx%d, the size of the "
+                    "tile that is to be like it",
+                    style->path, width, height, size, size);
+        return NULL;
+    }
+    g_autofree float *density = style_ink(style, error);
+    if (!density || (width == size && height == size))
+        return g_steal_pointer(&density);
+    g_autofree float *rows = fl_alloc((size_t)size * (size_t)height, sizeof *rows, "a tile", error);
+    g_autofree float *tile = fl_alloc(n, sizeof *tile, "a tile", error);
+    if (!rows || !tile)
+        return NULL;
+    for (size_t y = 0; y < (size_t)height; y++)
+        fold(density + y * (size_t)width, width, 1, size, rows + y * (size_t)size, 1);
+    for (size_t x = 0; x < (size_t)size; x++)
+        fold(rows + x, height, (size_t)size, size, tile + x, (size_t)size);
+    return normalise(tile, n, style->path, error) ? g_steal_pointer(&tile) : NULL;
 }
 
 static bool solve(const FlStyle *style, const FlTransportStyle *wanted,
                   FlTransportProgress progress, void *data, float *sum, GError **error)
 {
-    g_autofree float *density = style_ink(style, error);
-    g_autoptr(FlSliced) sliced =
-        density ? fl_sliced_new(density, style->width, style->height, error) : NULL;
+    g_autofree float *picture = tile_ink(style, wanted->size, error);
     g_auto(FlPotential) potential = {0};
-    FlTransportProblem problem = {.width = wanted->size,
-                                  .height = wanted->size,
-                                  .style = sliced,
-                                  .pace = wanted->pace,
-                                  .key = 1};
-    if (!sliced || !pixels_of(style, wanted, density, &problem.picture, error) ||
-        !fl_potential_init(&potential, wanted->size, wanted->size, error))
-        return false;
-    if (!fl_transport_solve(&problem, wanted->effort, &potential, progress, data, error))
+    const FlTransportProblem problem = {wanted->size, wanted->size, picture, wanted->pace};
+    if (!picture || !fl_potential_init(&potential, wanted->size, wanted->size, error) ||
+        !fl_transport_solve(&problem, wanted->effort, &potential, progress, data, error))
         return false;
     keep_potential(&potential, (size_t)wanted->size * (size_t)wanted->size, sum);
     return true;

@@ -34,7 +34,6 @@ bool fl_tile_exists(const char *folder)
 
 static const FlTableKey keys[] = {
     {"size", FL_KEY_OF(INTEGER, FlTransportStyle, size), 64, 1024},
-    {"match", FL_KEY_OF(WORD, FlTransportStyle, match), .words = "patches|picture"},
     {"taper", FL_KEY_OF(NUMBER, FlTransportStyle, taper_px), 1, 1000},
     {"pace", FL_KEY_OF(NUMBER, FlTransportStyle, pace), 0.1, 10},
     {"effort", FL_KEY_OF(NUMBER, FlTransportStyle, effort), 0.1, 100},

@@ -5,15 +5,8 @@
 #include "style/style_folder.h"
 #include "transport/solve.h"
 
-/** The features that the solver compares. */
-typedef enum FlTransportMatch {
-    FL_MATCH_PATCHES, // the patches of the picture: a pattern of the same kind
-    FL_MATCH_PICTURE, // its pixels: the tile is the picture, which must be of its size
-} FlTransportMatch;
-
 /** The section [transport] of style.ini: fluidy-style(5). */
 typedef struct FlTransportStyle {
-    FlTransportMatch match;
     int size;       // of the tile, px, a multiple of 16
     float taper_px; // ink nearer to the contour moves less
     float pace;     // of the solution: FlTransportProblem
