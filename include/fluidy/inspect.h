@@ -76,6 +76,16 @@ FL_API bool fl_map_regions(const FlRenderOptions *options, GError **error);
  */
 FL_API bool fl_flatten(const FlRenderOptions *options, GError **error);
 
+/**
+ * Writes a look, one file that holds how the options paint: their config and settings, styles that
+ * do not come with the program, pictures of paper and background, and a thumbnail of a frame in the
+ * middle, 320 px wide. FlRenderOptions.config may name it then.
+ *
+ * path ends in .fluidy; it is replaced if options->overwrite says so. options->note is told.
+ * Returns: false with an error of FL_ERROR: FL_ERROR_LIMIT if the look gets too large.
+ */
+FL_API bool fl_save_look(const FlRenderOptions *options, const char *path, GError **error);
+
 G_END_DECLS
 
 #endif

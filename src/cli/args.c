@@ -92,6 +92,30 @@ static gboolean read_limit(const char *name, const char *value, gpointer data, G
     return fl_limit_set(value, error);
 }
 
+/* --look FILE is the first config, which all others override. */
+static gboolean read_look(const char *name, const char *value, gpointer data, GError **error)
+{
+    FlArgs *args = data;
+    const char *after = args->render.config;
+    if (!g_str_has_suffix(value, ".fluidy")) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s”: expected a look, FILE.fluidy", name,
+                    value);
+        return FALSE;
+    }
+    g_autofree char *configs = after ? add_config(value, name, after, error) : g_strdup(value);
+    if (configs)
+        args->render.config = keep(args, configs);
+    return configs != NULL;
+}
+
+static gboolean read_save_look(const char *name, const char *value, gpointer data, GError **error)
+{
+    FlArgs *args = data;
+    args->look = keep(args, value);
+    args->task = FL_COMMAND_SAVE_LOOK;
+    return TRUE;
+}
+
 /* --map DIAL=PATTERN sets map-DIAL. */
 static gboolean read_map(const char *name, const char *value, gpointer data, GError **error)
 {
@@ -371,8 +395,9 @@ static bool needs_input(FlCommand task)
 {
     return task == FL_COMMAND_RENDER || task == FL_COMMAND_LIST_REGIONS ||
            task == FL_COMMAND_PRINT_CONFIG || task == FL_COMMAND_CHECK || task == FL_COMMAND_FLAT ||
-           task == FL_COMMAND_COMPARE || task == FL_COMMAND_METHODS || task == FL_COMMAND_PLAN ||
-           task == FL_COMMAND_SERVE || task == FL_COMMAND_WINDOW;
+           task == FL_COMMAND_COMPARE || task == FL_COMMAND_METHODS ||
+           task == FL_COMMAND_SAVE_LOOK || task == FL_COMMAND_PLAN || task == FL_COMMAND_SERVE ||
+           task == FL_COMMAND_WINDOW;
 }
 
 /* Previews and comparisons are drafts, and replace the previous ones. */

@@ -17,6 +17,7 @@ typedef enum FlCommand {
     FL_COMMAND_FLAT,
     FL_COMMAND_COMPARE,
     FL_COMMAND_PLAN,
+    FL_COMMAND_SAVE_LOOK,
     FL_COMMAND_METHODS,
     FL_COMMAND_SERVE,
     FL_COMMAND_WINDOW,
@@ -37,6 +38,7 @@ typedef struct FlArgs {
     const char *preview; // a range of frames; NULL: no preview
     char **variants;     // of FL_COMMAND_COMPARE, styles; NULL: all there are; or _METHODS
     FlFarm farm;         // of FL_COMMAND_PLAN
+    const char *look;    // of FL_COMMAND_SAVE_LOOK
     char **command;      // likewise: the words without --plan
     GPtrArray *limits;   // char *: NAME=N, as they were given
     int port;            // of FL_COMMAND_SERVE; 0: any that is free

@@ -84,9 +84,16 @@ static char *path_beside(const char *input)
     return g_build_filename(folder, "fluidy-svg.conf", NULL);
 }
 
-char *fl_live_config_save(const FlLiveConfig *config, bool replace, GError **error)
+/* The config that choices are written into; a look is not, but included. */
+static const char *given_config(const FlLiveConfig *config)
 {
     const char *given = config->args->render.config;
+    return given && !g_str_has_suffix(given, ".fluidy") ? given : NULL;
+}
+
+char *fl_live_config_save(const FlLiveConfig *config, bool replace, GError **error)
+{
+    const char *given = given_config(config);
     g_autofree char *path = given ? g_strdup(given) : path_beside(config->args->render.inputs[0]);
     g_autofree char *portable = fl_config_edit_map(config->text, make_portable, NULL);
     const char *text = given ? config->text : portable;
@@ -150,11 +157,15 @@ static bool read_base(FlLiveConfig *config, GError **error)
                     "--serve: expected one config, which may include others");
         return false;
     }
-    if (path && !g_file_get_contents(path, &text, NULL, error))
+    if (given_config(config) && !g_file_get_contents(path, &text, NULL, error))
         return false;
-    if (!path)
+    if (!text)
         text = g_strdup("# How the regions are painted; see fluidy-svg.conf(5).\n\n[project]\n"
                         "version = 1\n");
+    if (path && !given_config(config)) {
+        g_autofree char *look = g_canonicalize_filename(path, NULL);
+        set(&text, "project", "include", look);
+    }
     g_autofree char *style = wants_style(config->args) ? first_style() : NULL;
     if (style)
         set(&text, "defaults", "style", style);

@@ -333,6 +333,8 @@ static int work(FlArgs *args)
         fl_map_regions(&args->render, &error);
     else if (args->task == FL_COMMAND_FLAT)
         fl_flatten(&args->render, &error);
+    else if (args->task == FL_COMMAND_SAVE_LOOK)
+        fl_save_look(&args->render, args->look, &error);
     else if (args->task == FL_COMMAND_COMPARE)
         compare_styles(args, &error);
     else if (args->task == FL_COMMAND_METHODS)

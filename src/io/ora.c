@@ -1,5 +1,6 @@
 /* OpenRaster files [freedesktop.org, OpenRaster 0.0.5], which Krita, MyPaint and GIMP open. */
 #include "base/error.h"
+#include "io/archive.h"
 #include "io/png.h"
 #include "io/sink.h"
 
@@ -7,63 +8,15 @@
 #include <zip.h>
 
 #define THUMBNAIL_PX 256
-#define DOS_EPOCH 315532800 // 1980-01-01: the same bytes on any day
 
-/** A ZIP archive that grows in memory. What is added must live until it is closed. */
-typedef struct Archive {
-    zip_source_t *memory;
-    zip_t *zip;
-    GPtrArray *parts; // GBytes
-} Archive;
-
-static bool archive_open(Archive *archive)
-{
-    archive->parts = g_ptr_array_new_with_free_func((GDestroyNotify)g_bytes_unref);
-    archive->memory = zip_source_buffer_create(NULL, 0, 0, NULL);
-    if (!archive->memory)
-        return false;
-    zip_source_keep(archive->memory);
-    archive->zip = zip_open_from_source(archive->memory, ZIP_TRUNCATE, NULL);
-    return archive->zip != NULL;
-}
-
-static void archive_clear(Archive *archive)
-{
-    if (archive->zip)
-        zip_discard(archive->zip);
-    if (archive->memory)
-        zip_source_free(archive->memory);
-    g_ptr_array_unref(archive->parts);
-}
-
-/** Stores a part as it is: PNG is deflated already. */
-static bool archive_add(Archive *archive, const char *name, GBytes *bytes)
-{
-    g_ptr_array_add(archive->parts, bytes);
-    zip_source_t *source =
-        zip_source_buffer(archive->zip, g_bytes_get_data(bytes, NULL), g_bytes_get_size(bytes), 0);
-    const zip_int64_t index =
-        source ? zip_file_add(archive->zip, name, source, ZIP_FL_ENC_UTF_8) : -1;
-    if (source && index < 0)
-        zip_source_free(source);
-    return index >= 0 &&
-           zip_set_file_compression(archive->zip, (zip_uint64_t)index, ZIP_CM_STORE, 0) == 0 &&
-           zip_file_set_mtime(archive->zip, (zip_uint64_t)index, DOS_EPOCH, 0) == 0;
-}
-
-static bool add_text(Archive *archive, const char *name, const char *text)
-{
-    return archive_add(archive, name, g_bytes_new(text, strlen(text)));
-}
-
-static bool add_png(Archive *archive, const char *name, const FlPng *png)
+static bool add_png(FlArchive *archive, const char *name, const FlPng *png)
 {
     GBytes *bytes = fl_png_encode(png);
-    return bytes && archive_add(archive, name, bytes);
+    return bytes && fl_archive_add(archive, name, bytes);
 }
 
 /** The frame at most THUMBNAIL_PX wide and high: every n-th pixel will do. */
-static bool add_thumbnail(Archive *archive, const FlSinkParams *params, const uint8_t *rgba)
+static bool add_thumbnail(FlArchive *archive, const FlSinkParams *params, const uint8_t *rgba)
 {
     const int step = (MAX(params->width, params->height) + THUMBNAIL_PX - 1) / THUMBNAIL_PX;
     const int width = (params->width + step - 1) / step;
@@ -188,17 +141,17 @@ static GBytes *bytes_of(const Part *part, GHashTable *kept, bool fast)
 }
 
 /** mimetype must be the first part, and stored. */
-static bool add_parts(Archive *archive, const FlSinkParams *params, GHashTable *kept,
+static bool add_parts(FlArchive *archive, const FlSinkParams *params, GHashTable *kept,
                       const FlSinkFrame *frame)
 {
     g_autoptr(GArray) parts = parts_of(frame);
     g_autofree char *xml = stack_xml(params, parts);
-    bool ok =
-        add_text(archive, "mimetype", "image/openraster") && add_text(archive, "stack.xml", xml);
+    bool ok = fl_archive_add_text(archive, "mimetype", "image/openraster") &&
+              fl_archive_add_text(archive, "stack.xml", xml);
     for (guint k = 0; ok && k < parts->len; k++) {
         g_autofree char *name = g_strdup_printf("data/layer%03u.png", k);
         GBytes *bytes = bytes_of(&g_array_index(parts, Part, k), kept, params->fast);
-        ok = bytes && archive_add(archive, name, bytes);
+        ok = bytes && fl_archive_add(archive, name, bytes);
     }
     const FlPng merged = {.width = params->width,
                           .height = params->height,
@@ -210,26 +163,9 @@ static bool add_parts(Archive *archive, const FlSinkParams *params, GHashTable *
 }
 
 /** The mark is the comment of the archive. */
-static bool archive_mark(Archive *archive, const char *mark)
+static bool archive_mark(FlArchive *archive, const char *mark)
 {
     return !mark || zip_set_archive_comment(archive->zip, mark, (zip_uint16_t)strlen(mark)) == 0;
-}
-
-/** Completes the archive and writes it to the stream. */
-static bool archive_store(Archive *archive, FILE *stream)
-{
-    char block[65536];
-    zip_int64_t n = 0;
-    if (zip_close(archive->zip) != 0)
-        return false;
-    archive->zip = NULL;
-    if (zip_source_open(archive->memory) != 0)
-        return false;
-    while ((n = zip_source_read(archive->memory, block, sizeof block)) > 0)
-        if (fwrite(block, 1, (size_t)n, stream) != (size_t)n)
-            break;
-    zip_source_close(archive->memory);
-    return n == 0;
 }
 
 static bool ora_open(FlSink *sink, GError **error)
@@ -245,11 +181,11 @@ static void ora_clear(FlSink *sink)
 
 static bool ora_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
 {
-    Archive archive = {0};
+    FlArchive archive = {0};
     const bool put =
-        archive_open(&archive) && add_parts(&archive, &sink->params, sink->state, frame) &&
-        archive_mark(&archive, sink->mark) && archive_store(&archive, sink->file.stream);
-    archive_clear(&archive);
+        fl_archive_open(&archive) && add_parts(&archive, &sink->params, sink->state, frame) &&
+        archive_mark(&archive, sink->mark) && fl_archive_store(&archive, sink->file.stream);
+    fl_archive_clear(&archive);
     return put || fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot be written: %s", sink->file.path,
                           "the archive could not be made; is the disk full?");
 }

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "params/key_table.h"
+#include "params/look.h"
 #include "params/options.h"
 #include "params/text.h"
 
@@ -18,6 +19,7 @@ typedef struct Reader {
     FlConfig *config;
     const char *path;
     char *folder;
+    bool of_look; // names files of its folder only
     Place place;
     bool present[REGION + 1];
     int rule;             // of this section
@@ -247,6 +249,35 @@ static bool set_default(const Reader *reader, const char *key, const char *value
     return add_override(reader, &reader->config->defaults, key, value, error);
 }
 
+/* True if all paths that a value may name start in the folder of the config and stay there. */
+static bool stays_in_folder(const char *value)
+{
+    g_auto(GStrv) words = g_strsplit_set(value, " \t;", -1);
+    bool stays = true;
+    for (char **word = words; *word; word++) {
+        g_auto(GStrv) parts = g_strsplit(*word, "/", -1);
+        stays = stays && **word != '/' && **word != '~' &&
+                !g_strv_contains((const char *const *)parts, "..");
+    }
+    return stays;
+}
+
+/* A look says how to paint, by its own files and those of the program: it may be a stranger's. */
+static bool check_of_look(const Reader *reader, const char *key, const char *value, GError **error)
+{
+    const FlOption *option =
+        fl_option_find(reader->place == PROJECT ? FL_SCOPE_RENDER : FL_SCOPE_REGION, key);
+    const bool writes = reader->place == PROJECT && option && option->bytes == FL_BYTES_NEVER;
+    if (writes || strcmp(key, "include") == 0)
+        return fl_fail(error, FL_ERROR_USAGE, "%s: a look says how to paint; expected no such key",
+                       key);
+    return !option ||
+           (option->type != FL_OPTION_PATH && option->type != FL_OPTION_GROUND &&
+            option->type != FL_OPTION_STYLE && option->type != FL_OPTION_MAP) ||
+           stays_in_folder(value) ||
+           fl_fail(error, FL_ERROR_USAGE, "%s: “%s” is outside of the look", key, value);
+}
+
 static bool read_entry(void *data, const char *key, const char *value, int line, GError **error)
 {
     Reader *reader = data;
@@ -259,6 +290,8 @@ static bool read_entry(void *data, const char *key, const char *value, int line,
         return fl_fail(error, FL_ERROR_USAGE, "%s is set twice in this section", key);
     if (!*value)
         return fl_fail(error, FL_ERROR_USAGE, "%s: the value is missing", key);
+    if (reader->of_look && !check_of_look(reader, key, value, error))
+        return false;
     if (reader->place == PROJECT)
         return set_project(reader, key, value, error);
     if (reader->place == DEFAULTS)
@@ -270,6 +303,21 @@ static bool read_entry(void *data, const char *key, const char *value, int line,
 
 static bool read_files(FlConfig *config, const FlRenderOptions *caller, char **paths,
                        const char *folder, GError **error);
+
+/* Unpacks a look. Returns: the text of its config, to be freed. */
+static char *open_look(Reader *reader, GError **error)
+{
+    char *text = NULL;
+    size_t bytes;
+    g_autofree char *folder = fl_look_unpack(reader->path, error);
+    g_autofree char *config = folder ? g_build_filename(folder, FL_LOOK_CONFIG, NULL) : NULL;
+    if (!config || !fl_file_read(config, 1 << 20, &text, &bytes, error))
+        return NULL;
+    g_free(reader->folder);
+    reader->folder = g_steal_pointer(&folder);
+    reader->of_look = true;
+    return text;
+}
 
 /* text: of the file, which is then not read; NULL: it is read. An included file is a regular one.
  */
@@ -283,9 +331,8 @@ static bool read_file(FlConfig *config, const FlRenderOptions *caller, const cha
         .keys = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL),
         .sections = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL),
     };
+    g_autofree char *of_look = NULL;
     const FlFileWait wait = {caller ? caller->stopped : NULL, caller ? caller->data : NULL};
-    const FlKeyReader calls = {
-        read_section, read_entry, &reader, FL_ERROR_USAGE, included ? NULL : &wait, text};
     if (config->files->len >= MOST_FILES)
         return fl_fail(
             error, FL_ERROR_USAGE,
@@ -294,6 +341,10 @@ static bool read_file(FlConfig *config, const FlRenderOptions *caller, const cha
     g_ptr_array_add(config->files, g_strdup(path));
     if (caller && caller->reads)
         caller->reads(path, caller->data);
+    if (!text && fl_look_named(path) && !(text = of_look = open_look(&reader, error)))
+        return false;
+    const FlKeyReader calls = {
+        read_section, read_entry, &reader, FL_ERROR_USAGE, included ? NULL : &wait, text};
     return fl_key_file_read(path, &calls, error) &&
            read_files(config, caller, reader.includes, reader.folder, error);
 }
@@ -383,6 +434,23 @@ void fl_config_add_rules(const FlConfig *config, FlDigest *digest)
         for (size_t k = 0; k < G_N_ELEMENTS(match_keys); k++)
             add_list(digest, *match_list(rule, (int)k));
     }
+}
+
+void fl_rule_append_matches(const FlRule *rule, GString *text)
+{
+    if (rule->match_all)
+        g_string_append(text, "match = *\n");
+    for (size_t k = 0; k < G_N_ELEMENTS(match_keys); k++) {
+        char **list = *match_list((FlRule *)rule, (int)k);
+        g_autofree char *items = list ? g_strjoinv("; ", list) : NULL;
+        if (items)
+            g_string_append_printf(text, "%s = %s\n", match_keys[k].key, items);
+    }
+    char number[G_ASCII_DTOSTR_BUF_SIZE];
+    if (rule->match_tolerance > 0)
+        g_string_append_printf(
+            text, "match-tolerance = %s\n",
+            g_ascii_dtostr(number, sizeof number, (double)rule->match_tolerance));
 }
 
 static void rule_clear(FlRule *rule)

@@ -3,6 +3,7 @@
 #define FLUIDY_PARAMS_CONFIG_H
 
 #include "base/digest.h"
+#include "params/options.h"
 #include "params/region_settings.h"
 #include <fluidy/render.h>
 
@@ -83,6 +84,22 @@ typedef struct FlGiven {
 bool fl_config_region_settings(const FlConfig *config, int rule, const char *region, FlGiven given,
                                const FlOverrides *first, FlRegionSettings *settings,
                                GError **error);
+
+/** Appends the match keys of a rule as lines. */
+void fl_rule_append_matches(const FlRule *rule, GString *text);
+
+/** What stands for a value that may name files, of an option and from a folder, which may be NULL.
+ * Returns: to be freed; NULL with the error set. */
+typedef char *(*FlConfigPath)(const FlOption *option, const char *value, const char *folder,
+                              void *data, GError **error);
+
+/**
+ * Writes a config that paints as `config` does with the options over it, in one file: whatever says
+ * how to paint, but for control maps. The options are not completed with the defaults.
+ * Returns: to be freed; NULL with an error of `path` or FL_ERROR_USAGE.
+ */
+char *fl_config_text(const FlConfig *config, const FlRenderOptions *options, FlConfigPath path,
+                     void *data, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlConfig, fl_config_free)
 
