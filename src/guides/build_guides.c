@@ -449,23 +449,6 @@ static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, int32_
                               error);
 }
 
-/** Stores the flow unrounded, for fl_guide_sequence_flow(). */
-static bool put_unrounded(Builder *b, int frame, const FlOutline *outline, const float *flow,
-                          GError **error)
-{
-    const size_t n = 2 * fl_rect_pixels(outline->box);
-    if (!flow || !b->sequence->source.keeps_flow)
-        return true;
-    g_autofree int32_t *bits = fl_alloc_unset(n, sizeof *bits, "a flow", error);
-    if (!bits)
-        return false;
-    memcpy(bits, flow, n * sizeof *bits);
-    b->sequence->frames[frame].holder[FL_GUIDE_PLANE_UNROUNDED] = frame;
-    return fl_plane_store_put(b->sequence->spill,
-                              fl_guide_plane_block(frame, FL_GUIDE_PLANE_UNROUNDED), bits, n, 2,
-                              error);
-}
-
 /** Directions alone need normals, which are large: those of an outline may go, unless the next
  * frame has it as well. */
 static void drop_normals(const Builder *b, int frame, FlOutline *outline)
@@ -482,7 +465,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     if (!outline_of(b, frame, &outline, error))
         return false;
     // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): set where no error is
-    *record = (FlFrameRecord){outline->box, outline->empty, .holder = {-1, -1, -1, -1, -1, -1}};
+    *record = (FlFrameRecord){outline->box, outline->empty, .holder = {-1, -1, -1, -1, -1}};
     b->stirs = false;
     if (outline->box.width == 0) {
         fl_extent_step(b->extent, &record->box, NULL, NULL, NULL, NULL);
@@ -500,8 +483,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
         memcpy(record->holder, record[-1].holder, sizeof record->holder);
         record->holder[FL_GUIDE_PLANE_MOTION] = -1;
     } else if (!put_shape(b, frame, outline, flow, error) ||
-               !put_motion(b, frame, outline, flow, error) ||
-               !put_unrounded(b, frame, outline, flow, error)) {
+               !put_motion(b, frame, outline, flow, error)) {
         return false;
     }
     drop_normals(b, frame, outline);

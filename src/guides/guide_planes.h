@@ -12,8 +12,7 @@ typedef enum FlGuidePlane {
     FL_GUIDE_PLANE_FLOW,           // interleaved, FL_FLOW_ONE a px
     FL_GUIDE_PLANE_PLUS,           // FL_EXTENT_ONE a px, as is MINUS
     FL_GUIDE_PLANE_MINUS,
-    FL_GUIDE_PLANE_MOTION,    // interleaved, FL_MOTION_ONE a px
-    FL_GUIDE_PLANE_UNROUNDED, // the flow's floats, bit by bit, if the source keeps them
+    FL_GUIDE_PLANE_MOTION, // interleaved, FL_MOTION_ONE a px
     FL_N_GUIDE_PLANES,
 } FlGuidePlane;
 
@@ -41,10 +40,7 @@ static inline size_t fl_guide_plane_block(int frame, FlGuidePlane plane)
 /** The number of integers per pixel of a plane. */
 static inline size_t fl_plane_step(FlGuidePlane plane)
 {
-    return plane == FL_GUIDE_PLANE_FLOW || plane == FL_GUIDE_PLANE_MOTION ||
-                   plane == FL_GUIDE_PLANE_UNROUNDED
-               ? 2
-               : 1;
+    return plane == FL_GUIDE_PLANE_FLOW || plane == FL_GUIDE_PLANE_MOTION ? 2 : 1;
 }
 
 /** Reads a stored plane, of bytes or integers; a holder of -1 is not stored. */

@@ -229,22 +229,6 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
            fl_guide_sequence_planes(sequence, frame, guides, error);
 }
 
-bool fl_guide_sequence_flow(const FlGuideSequence *sequence, int frame, float *flow, GError **error)
-{
-    const FlRect whole = {0, 0, sequence->source.width, sequence->source.height};
-    const FlFrameRecord *record = &sequence->frames[frame];
-    g_assert(sequence->source.keeps_flow);
-    memset(flow, 0, 2 * fl_rect_pixels(whole) * sizeof *flow);
-    if (record->holder[FL_GUIDE_PLANE_UNROUNDED] < 0)
-        return true;
-    g_autofree int32_t *bits =
-        fl_alloc_unset(2 * fl_rect_pixels(record->box), sizeof *bits, "a flow", error);
-    if (!bits || !fl_guide_sequence_plane(sequence, frame, FL_GUIDE_PLANE_UNROUNDED, bits, error))
-        return false;
-    fl_rect_copy(bits, record->box, flow, whole, 2 * sizeof *flow);
-    return true;
-}
-
 static const char what[] = "the guides of a frame";
 
 bool fl_guides_init_distance(FlGuides *guides, int width, int height, GError **error)

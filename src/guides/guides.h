@@ -84,7 +84,6 @@ typedef struct FlGuideSource {
     /** Tells if that displacement is uniform: then motion() is not called. NULL: unknown
      * beforehand. */
     FlUniformMotion (*uniform)(void *data, int frame, const FlOutlinePair *outlines);
-    bool keeps_flow; // unrounded, for fl_guide_sequence_flow()
 } FlGuideSource;
 
 /** The guides of a whole sequence. Its memory does not grow with the number of frames (FlSpill). */
@@ -111,13 +110,6 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
 /** True if a frame has the mask of the frame before and is free of motion, so that its guides need
  * not be read. */
 bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame);
-
-/**
- * The flow that directions were made from, before it was rounded for FlGuides: a source that
- * supplies this flow gets the same guides. flow: 2 * width * height. The source must keep the flow.
- */
-bool fl_guide_sequence_flow(const FlGuideSequence *sequence, int frame, float *flow,
-                            GError **error);
 
 bool fl_guides_init(FlGuides *guides, int width, int height, GError **error);
 

@@ -100,7 +100,7 @@ static float largest(const float *values, size_t n)
     return most;
 }
 
-static bool dump_guides(const Dump *dump, const FlGuides *guides, float *flow, GError **error)
+static bool dump_guides(const Dump *dump, const FlGuides *guides, GError **error)
 {
     const size_t pixels = (size_t)guides->width * guides->height;
     g_autofree float *mask = fl_alloc(pixels, sizeof(float), "a picture", error);
@@ -113,7 +113,7 @@ static bool dump_guides(const Dump *dump, const FlGuides *guides, float *flow, G
         {"mask", mask, 1, 0, 1},
         {"distance", guides->distance, 1, -b, 2 * b},
         {"depth", guides->depth, 1, -b, 2 * b},
-        {"flow", flow, 2, 0, largest(flow, 2 * pixels)},
+        {"flow", guides->flow, 2, 0, largest(guides->flow, 2 * pixels)},
         {"ext-plus", guides->ext_plus, 1, 0, largest(guides->ext_plus, pixels)},
         {"ext-minus", guides->ext_minus, 1, 0, largest(guides->ext_minus, pixels)},
     };
@@ -193,10 +193,10 @@ static bool dump_temporal(const Dump *dump, const FlSynthView *view, GError **er
 }
 
 bool fl_dump_frame(const char *folder, const FlPaintedRegion *painted, const FlGuides *guides,
-                   float *flow, int number, GError **error)
+                   int number, GError **error)
 {
     const Dump dump = {folder, painted, number};
-    if (!dump_guides(&dump, guides, flow, error) || !dump_motion(&dump, guides, error))
+    if (!dump_guides(&dump, guides, error) || !dump_motion(&dump, guides, error))
         return false;
     if (painted->view.nnf && !dump_field(&dump, &painted->view, error))
         return false;

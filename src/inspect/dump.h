@@ -20,10 +20,9 @@
  *   temporal     T_temp, r, g, b in 0 … 1           3
  *   temporal-weight  m(q), 0 … 1                    1
  *
- * flow covers the region's rect and is not rounded yet, see fl_guide_sequence_flow().
  * Returns: false with FL_ERROR_OUTPUT set.
  */
 bool fl_dump_frame(const char *folder, const FlPaintedRegion *painted, const FlGuides *guides,
-                   float *flow, int number, GError **error);
+                   int number, GError **error);
 
 #endif

@@ -184,7 +184,6 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     painted->area_px = r->area_px;
     painted->flow_files = plan->options.flow;
     painted->paint_files = plan->out.merge ? plan->out.paint : NULL;
-    painted->keeps_flow = plan->out.dump != NULL;
     painted->loops = plan->options.loop && !painted->paint_files;
     const float px = texture_px(plan, &painted->settings.params);
     fl_params_scale_lengths(&painted->settings.params, px);

@@ -27,7 +27,6 @@ typedef struct FlRegionPlan {
     FlRect place;               // of the paint in those files; width 0: not known
     FlControlMap *map[FL_MAPS]; // borrowed; NULL: the dial holds everywhere
     const char *flow_files;     // borrowed: pattern of flow files; NULL: flow from the masks
-    bool keeps_flow;            // for a dump
     bool loops;                 // the film's end leads into its beginning
 } FlRegionPlan;
 

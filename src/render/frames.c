@@ -42,16 +42,6 @@ bool fl_frames_tell(const FlFrames *frames, const char *stage, int done, double 
 
 /* ---- painting -------------------------------------------------------------------------------- */
 
-/* The guides and matches of a painter's new picture. */
-static bool dump_picture(const FlPlan *plan, const FlPainter *painter, int number, GError **error)
-{
-    const FlPaintedRegion *painted = &painter->result;
-    g_autofree float *flow =
-        fl_alloc(2 * fl_rect_pixels(painted->rect), sizeof(float), "a flow field", error);
-    return flow && fl_painter_flow(painter, flow, error) &&
-           fl_dump_frame(plan->out.dump, painted, fl_painter_guides(painter), flow, number, error);
-}
-
 /* Gives a painter's picture to the inspectors: statistics, report and dump. */
 static bool inspect_picture(const FlFrames *frames, int p, int frame, GError **error)
 {
@@ -61,7 +51,8 @@ static bool inspect_picture(const FlFrames *frames, int p, int frame, GError **e
     return fl_report_guides(frames->report, p, &painter->result, frame, fl_painter_guides(painter),
                             error) &&
            (!plan->out.dump || !is_new ||
-            dump_picture(plan, painter, fl_drawing_number(plan->shapes.drawing, frame), error));
+            fl_dump_frame(plan->out.dump, &painter->result, fl_painter_guides(painter),
+                          fl_drawing_number(plan->shapes.drawing, frame), error));
 }
 
 static bool paint_one(void *data, int p, int frame, GError **error)

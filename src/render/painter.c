@@ -145,7 +145,6 @@ static bool make_sequence(FlPainter *painter, GError **error)
                        source.n_frames,
                        painter->wrap,
                        settings->hold,
-                       source.keeps_flow,
                        source.flow != NULL,
                        source.motion != NULL,
                        source.uniform != NULL};

@@ -142,7 +142,4 @@ bool fl_painter_make_guides(FlPainter *painter, GError **error);
 /** Brings the guides that are wanted to the size of the picture. */
 bool fl_painter_show_guides(FlPainter *painter, GError **error);
 
-/** The flow of the last painted picture, as in its file: 2 floats per pixel of rect. */
-bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error);
-
 #endif

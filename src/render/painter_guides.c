@@ -253,8 +253,7 @@ FlGuideSource fl_painter_guide_source(FlPainter *painter)
                                      : given && !masks ? painter_motion
                                                        : NULL,
                            .uniform = known ? known_uniform : NULL,
-                           .data = painter,
-                           .keeps_flow = painter->plan->keeps_flow};
+                           .data = painter};
 }
 
 int fl_guided_grid(const FlRegionPlan *region, FlRect page)
@@ -458,19 +457,6 @@ void fl_painter_drop_guides(FlPainter *painter)
 {
     fl_guides_clear(&painter->guides);
     fl_guides_clear(&painter->shown);
-}
-
-bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error)
-{
-    const FlRect rect = painter->result.rect;
-    if (!halves(painter))
-        return fl_guide_sequence_flow(painter->sequence, painter->picture, flow, error);
-    g_autofree float *half = fl_alloc_unset(2 * fl_rect_pixels(fl_painter_guided(painter)),
-                                            sizeof(float), "a flow field", error);
-    if (!half || !fl_guide_sequence_flow(painter->sequence, painter->picture, half, error))
-        return false;
-    fl_flow_double(half, rect.width, rect.height, flow);
-    return true;
 }
 
 bool fl_painter_show_guides(FlPainter *painter, GError **error)
