@@ -171,8 +171,13 @@ static void a_view_shows_all_parts_and_changes_nothing(void)
     for (int f = 0; f < FRAMES; f++) {
         FlSynthView view;
         FlFrameStats stats;
+        g_auto(FlGuidePairs) pairs = {0};
         paint_next(film, f, &stats, &view);
         g_assert_true(has_match(&view, 24, 24) && has_match(&view, 100 + 3 * f, 24));
+        g_assert_true(fl_synth_guide_pairs(film->synth, &pairs, NULL));
+        g_assert_cmpstr(pairs.pair[0].name, ==, "shape");
+        g_assert_cmpint(pairs.pair[0].target[24 * WIDTH + 24], >, 200);
+        g_assert_cmpint(pairs.pair[0].target[24 * WIDTH + 100 + 3 * f], >, 200);
         g_assert_cmpint(film->now.mask[24 * WIDTH + 24], ==, 255);
     }
     g_assert_cmpmem(film->rgb, sizeof film->rgb, plain->rgb, sizeof plain->rgb);

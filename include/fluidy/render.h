@@ -207,6 +207,9 @@ typedef struct FlRenderOptions {
     const char *report;     /**< a folder for the HTML report, index.html; NULL: no report */
     const char
         *dump; /**< a folder for guides, fields and T_temp as pictures and data; NULL: no dump */
+    const char *ebsynth; /**< a folder for pairs of guides and ebsynth's command lines; with `merge`
+                            and no `paint`, the folder with the pictures that ebsynth painted; NULL:
+                            no export */
 
     /* How it runs. */
     bool watch;   /**< it is rendered again and again: an interrupted render leaves no state, since

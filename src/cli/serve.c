@@ -421,9 +421,9 @@ static void on_page(SoupServer *server, SoupServerMessage *message, const char *
 /* Refuses options that name outputs or choose another task. */
 static bool check_options(const FlArgs *args, GError **error)
 {
-    static const char *const others[] = {"output",  "report", "layers", "paint",     "stats",
-                                         "dump",    "merge",  "format", "no-frames", "resume",
-                                         "dry-run", "watch",  NULL};
+    static const char *const others[] = {"output", "report",  "layers", "paint",  "stats",
+                                         "dump",   "ebsynth", "merge",  "format", "no-frames",
+                                         "resume", "dry-run", "watch",  NULL};
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *option = fl_option_at(i);
         if (option->scope != FL_SCOPE_RENDER || !fl_option_is_set(option, &args->render) ||

@@ -486,10 +486,10 @@ char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *cons
     whole.merge = true; // the merge's visible regions are painted
     whole.paint = options->paint ? options->paint : "{region}_%04d.png";
     if (options->only_region || options->merge || options->part || options->report ||
-        options->dump) {
+        options->dump || options->ebsynth) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "a plan is of all regions and their merge; leave out ‘region’, ‘merge’, "
-                    "‘part’, ‘report’ and ‘dump’");
+                    "‘part’, ‘report’, ‘dump’ and ‘ebsynth’");
         return NULL;
     }
     g_autoptr(FlPlan) plan = fl_plan_new(&whole, error);

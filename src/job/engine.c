@@ -15,6 +15,16 @@ static void *patch_open(const FlEngineInput *input, GError **error)
     return synth;
 }
 
+static void patch_close(void *state)
+{
+    fl_synth_free(state);
+}
+
+static void patch_measure(void *state, bool energies)
+{
+    fl_synth_measure(state, energies);
+}
+
 static bool patch_frame(void *state, FlGuides *guides, const FlEnginePaint *paint, GError **error)
 {
     return fl_synth_frame(state, guides, paint->rgb, paint->stats, paint->view, error);
@@ -23,6 +33,26 @@ static bool patch_frame(void *state, FlGuides *guides, const FlEnginePaint *pain
 static int patch_drying(const FlStyleInstance *style, const FlParams *params)
 {
     return fl_synth_dries(style->exemplar, params) ? FL_DRYING_FRAMES : 0;
+}
+
+static bool patch_rest(void *state)
+{
+    return fl_synth_rest(state);
+}
+
+static bool patch_guide_pairs(const void *state, FlGuidePairs *pairs, GError **error)
+{
+    return fl_synth_guide_pairs(state, pairs, error);
+}
+
+static GBytes *patch_save(void *state, GError **error)
+{
+    return fl_synth_save(state, error);
+}
+
+static bool patch_load(void *state, GBytes *bytes, GError **error)
+{
+    return fl_synth_load(state, bytes, error);
 }
 
 /* ---- lazyfluids: an exemplar that rides on the motion, used equally [L15] -----------------------
@@ -34,6 +64,16 @@ static void *lazy_open(const FlEngineInput *input, GError **error)
                        input->settings->recording_end, input->size, input->seed, error);
 }
 
+static void lazy_close(void *state)
+{
+    fl_lazy_free(state);
+}
+
+static void lazy_measure(void *state, bool energies)
+{
+    fl_lazy_measure(state, energies);
+}
+
 static bool lazy_frame(void *state, FlGuides *guides, const FlEnginePaint *paint, GError **error)
 {
     return fl_lazy_frame(state, guides, paint->rgb, paint->alpha, paint->stats, paint->view, error);
@@ -42,6 +82,21 @@ static bool lazy_frame(void *state, FlGuides *guides, const FlEnginePaint *paint
 static float lazy_reach(const FlStyleInstance *style, const FlParams *params)
 {
     return style->exemplar->cut_out ? fl_lazy_reach(style->exemplar, params) : 0;
+}
+
+static bool lazy_guide_pairs(const void *state, FlGuidePairs *pairs, GError **error)
+{
+    return fl_lazy_guide_pairs(state, pairs, error);
+}
+
+static GBytes *lazy_save(void *state, GError **error)
+{
+    return fl_lazy_save(state, error);
+}
+
+static bool lazy_load(void *state, GBytes *bytes, GError **error)
+{
+    return fl_lazy_load(state, bytes, error);
 }
 
 /* ---- transport: the region's own ink, moved by the style's tile [KAGS19] ------------------------
@@ -110,22 +165,24 @@ static const FlEngine engines[] = {
                          .enlarges = true,
                          .plays = true,
                          .open = patch_open,
-                         .close = (FlCloseState)fl_synth_free,
-                         .measure = (FlMeasure)fl_synth_measure,
+                         .close = patch_close,
+                         .measure = patch_measure,
                          .frame = patch_frame,
-                         .rest = (FlRestAgain)fl_synth_rest,
+                         .rest = patch_rest,
                          .drying = patch_drying,
-                         .save = (FlSaveState)fl_synth_save,
-                         .load = (FlLoadState)fl_synth_load},
+                         .guide_pairs = patch_guide_pairs,
+                         .save = patch_save,
+                         .load = patch_load},
     [FL_ENGINE_LAZYFLUIDS] = {.name = "lazyfluids",
                               .reach = lazy_reach,
                               .plays = true,
                               .open = lazy_open,
-                              .close = (FlCloseState)fl_lazy_free,
-                              .measure = (FlMeasure)fl_lazy_measure,
+                              .close = lazy_close,
+                              .measure = lazy_measure,
                               .frame = lazy_frame,
-                              .save = (FlSaveState)fl_lazy_save,
-                              .load = (FlLoadState)fl_lazy_load},
+                              .guide_pairs = lazy_guide_pairs,
+                              .save = lazy_save,
+                              .load = lazy_load},
     [FL_ENGINE_TRANSPORT] = {.name = "transport",
                              .claims = fl_tile_exists,
                              .exposure = transport_exposure,

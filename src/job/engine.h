@@ -22,13 +22,6 @@ typedef struct FlEnginePaint {
     FlSynthView *view;   // zeroed; NULL: not needed. Engines without a field ignore it
 } FlEnginePaint;
 
-/* Calls of an engine whose own functions have a pointer to their state for `void *`. */
-typedef void (*FlCloseState)(void *state);
-typedef void (*FlMeasure)(void *state, bool energies);
-typedef bool (*FlRestAgain)(void *state);
-typedef GBytes *(*FlSaveState)(void *state, GError **error);
-typedef bool (*FlLoadState)(void *state, GBytes *bytes, GError **error);
-
 /**
  * One engine. The state that it keeps between the frames of a region is its own; different regions
  * are painted by different threads. The same input and frames give the same bytes on any number of
@@ -47,22 +40,25 @@ typedef struct FlEngine {
     bool plays;    // shows the recording: whether it flows and is large enough matters
     /** Returns: the state before the first frame; NULL with an error set. */
     void *(*open)(const FlEngineInput *input, GError **error);
-    FlCloseState close; // NULL is fine
+    void (*close)(void *state); // NULL is fine
     /** Switches energies in the statistics on or off; NULL: they are free, or missing. */
-    FlMeasure measure;
+    void (*measure)(void *state, bool energies);
     /** The next frame, in order; clears the guides only if they are disposable. An empty mask makes
      * the next one a first frame again. Guides of a part of the frame come to engines that rest. */
     bool (*frame)(void *state, FlGuides *guides, const FlEnginePaint *paint, GError **error);
     /** Makes the next frame from the last one, when all guides are equal and still: it keeps the
      * picture. Returns: false if the frame must be painted instead. NULL: always paint it. */
-    FlRestAgain rest;
+    bool (*rest)(void *state);
     /** The number of frames in which paint still changes after the drawing has come to rest; may be
      * NULL. Until then regions and their parts do not rest. */
     int (*drying)(const FlStyleInstance *style, const FlParams *params);
+    /** The guides of the frame just painted, which had a view and levels in its statistics. May be
+     * NULL. FL_ERROR_NO_MEMORY. */
+    bool (*guide_pairs)(const void *state, FlGuidePairs *pairs, GError **error);
     /** Saves the state for the next frame, to be freed with g_bytes_unref(); NULL with an error. */
-    FlSaveState save;
+    GBytes *(*save)(void *state, GError **error);
     /** FL_ERROR_CHANGED if the bytes are damaged or do not fit; they need not be trusted. */
-    FlLoadState load;
+    bool (*load)(void *state, GBytes *bytes, GError **error);
 } FlEngine;
 
 /** The engine of a region: the one that was chosen, or the first that claims the style's folder. */

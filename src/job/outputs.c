@@ -83,7 +83,8 @@ bool fl_guard_inputs(const FlOutputs *out, const FlShapes *shapes, FlInputs *inp
             if (!fl_inputs_may_write(inputs, shapes->drawing, g_strdup(files->pdata[k]), error))
                 return false;
     }
-    return may_fill_folders(shapes, inputs, out->dump, error);
+    return may_fill_folders(shapes, inputs, out->dump, error) &&
+           may_fill_folders(shapes, inputs, out->merge ? NULL : out->ebsynth, error);
 }
 
 /* ---- provenance ------------------------------------------------------------------------------ */

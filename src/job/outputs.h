@@ -17,7 +17,7 @@ typedef struct FlOutputs {
     int part, n_parts; // of a merge, `part` from 0
     int first, end;    // the frames of this run, up to and without `end`
     /* Of the options, whose texts are borrowed. */
-    const char *layers, *paint, *stats, *provenance, *report, *dump;
+    const char *layers, *paint, *stats, *provenance, *report, *dump, *ebsynth;
     FlPaintArea paint_area;
     FlOverwrite overwrite;
     bool merge;

@@ -4,6 +4,9 @@
 
 #include "job/region_plan.h"
 
+/** The file of a region's paint that ebsynth writes, below the folder of --ebsynth. */
+#define FL_EBSYNTH_OUTPUT "{region}/out_%04d.png"
+
 /**
  * The file of a region's paint in a frame; held frames share the file of the first.
  *

@@ -81,7 +81,8 @@ static bool check_options(const FlRenderOptions *options, GError **error)
 {
     const char *wrong = NULL;
     if (options->merge && !options->paint)
-        wrong = "‘merge’ composes what ‘paint’ has written; use that too";
+        wrong = "‘merge’ composes what ‘paint’ has written, or what ebsynth has painted in the "
+                "folder of ‘ebsynth’; use one of them too";
     else if (options->merge && (options->report || options->dump))
         wrong = "‘merge’ paints nothing that ‘report’ or ‘dump’ could show; use it alone";
     else if (options->report && strcmp(options->report, "-") == 0)
@@ -108,7 +109,7 @@ static bool look_at_paint(FlPlan *plan, GError **error)
 static bool are_frames_alone(const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
-    const bool gives_paint = !o->merge && o->paint;
+    const bool gives_paint = !o->merge && (o->paint || o->ebsynth);
     return !plan->any_order && !o->layers && !plan->out.format->takes_layers && !o->only_region &&
            !gives_paint && !o->dump && !o->report;
 }
@@ -146,10 +147,20 @@ static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
             look_at_paint(plan, error));
 }
 
+/* To be freed with g_free(). */
+static char *pattern_below(const char *folder)
+{
+    g_autoptr(GString) name = g_string_new(folder);
+    g_string_replace(name, "%", "%%", 0);
+    return g_build_filename(name->str, FL_EBSYNTH_OUTPUT, NULL);
+}
+
 /* Chooses the outputs, by the options as they were given, before the config has completed them. */
 static void choose_written(FlPlan *plan, const FlRenderOptions *given)
 {
     const FlRenderOptions *o = &plan->options;
+    if (o->merge && o->ebsynth && !o->paint)
+        plan->options.paint = plan->painted_by_ebsynth = pattern_below(o->ebsynth);
     // paint of some regions is no frame, even if the config says where frames and layers are
     const bool paint_alone = given->paint && given->only_region && !given->output;
     if (paint_alone && o->no_frames && !given->layers)
@@ -163,6 +174,7 @@ static void choose_written(FlPlan *plan, const FlRenderOptions *given)
                             .provenance = o->provenance,
                             .report = o->report,
                             .dump = o->dump,
+                            .ebsynth = o->ebsynth,
                             .paint_area = o->paint_area,
                             .overwrite = o->overwrite,
                             .merge = o->merge,
@@ -180,7 +192,8 @@ static bool begin(FlPlan *plan, const FlPlan *before, const FlRenderOptions *opt
         g_hash_table_new_full(g_str_hash, g_str_equal, g_free, (GDestroyNotify)fl_control_map_free);
     plan->caller = fl_caller_of(options);
     plan->any_order = before || memory > 0;
-    plan->styles = before ? before->styles : fl_style_cache_new(!options->dry_run);
+    plan->styles =
+        before ? before->styles : fl_style_cache_new(!options->dry_run, options->ebsynth);
     fl_style_cache_set_caller(plan->styles, &plan->caller);
     plan->inputs = before ? before->inputs : fl_inputs_new(options->reads, options->data);
     if (!before && !fl_sealed_read_key(error))
@@ -319,6 +332,7 @@ void fl_plan_free(FlPlan *plan)
     g_free(shapes->seen);
     g_free(shapes->hold_of);
     g_free(shapes->hands);
+    g_free(plan->painted_by_ebsynth);
     g_free(plan->out.output);
     g_free(plan->out.movie);
     g_hash_table_unref(plan->maps);

@@ -23,17 +23,18 @@ typedef struct FlPlan {
     FlShapes shapes;  // as they are painted
     FlOutputs out;
     FlStyleCache *styles;
-    GHashTable *maps;    // path or pattern of a control map -> FlControlMap
-    bool by_page;        // paint of some region, and so the paper, is as large as the page asks for
-    bool half;           // drafts: the page is drawn, painted and composed at half their size
-    FlStore *cache;      // NULL: no paint is kept
-    bool any_order;      // frames are asked for in any order, and options change
-    FlDigest reading;    // of what decides the drawing
-    FlDigest request;    // of what was asked for, before anything of it is read
-    FlDigest made_from;  // of all that decides the frames, if it is known before reading
-    FlFinished finished; // ALL: the rest of the plan is not made
-    int n_finished;      // frames of what is finished
-    FlCaller caller;     // of the options
+    GHashTable *maps; // path or pattern of a control map -> FlControlMap
+    bool by_page;     // paint of some region, and so the paper, is as large as the page asks for
+    bool half;        // drafts: the page is drawn, painted and composed at half their size
+    char *painted_by_ebsynth; // pattern: options.paint where that is what is merged; or NULL
+    FlStore *cache;           // NULL: no paint is kept
+    bool any_order;           // frames are asked for in any order, and options change
+    FlDigest reading;         // of what decides the drawing
+    FlDigest request;         // of what was asked for, before anything of it is read
+    FlDigest made_from;       // of all that decides the frames, if it is known before reading
+    FlFinished finished;      // ALL: the rest of the plan is not made
+    int n_finished;           // frames of what is finished
+    FlCaller caller;          // of the options
     uint8_t paper[3];
 } FlPlan;
 

@@ -76,6 +76,18 @@ static float texture_px(const FlPlan *plan, const FlParams *params)
     return plan->half ? .5f : 1;
 }
 
+/* Checks that the engine has the pairs of guides that are exported to ebsynth. */
+static bool check_export(const FlPlan *plan, const FlRegionPlan *painted, GError **error)
+{
+    if (!plan->out.ebsynth || plan->out.merge || painted->engine->guide_pairs)
+        return true;
+    return fl_fail(
+        error, FL_ERROR_USAGE,
+        "region %s: the engine %s has no guides for ‘ebsynth’; use another, or ‘region’ to "
+        "leave it out",
+        painted->name, painted->engine->name);
+}
+
 /* Two layers are mixed while a style replaces another: both must have the shape of the region,
  * which paint that is cut out has not. */
 static bool check_keyed(const FlRegionPlan *painted, GError **error)
@@ -195,7 +207,8 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
         fl_params_scale_lengths(&painted->settings.params, .5f);
     painted->engine = fl_engine_choose(painted->settings.engine, painted->style->path);
     if (!fl_plan_choose_fluid(painted, plan->options.flow, error) || !check_keyed(painted, error) ||
-        !open_maps(plan, painted, error) || !warn_of_style(plan, painted, error))
+        !open_maps(plan, painted, error) || !check_export(plan, painted, error) ||
+        !warn_of_style(plan, painted, error))
         return false;
     if (plan->options.verbose)
         fl_note(&plan->caller, "region %s: style %s, engine %s", r->name, painted->style->path,

@@ -301,7 +301,7 @@ void fl_resume_clear(FlResume *resume)
 /* True if a render writes more than frames and a film. */
 static bool writes_more(const FlOutputs *o)
 {
-    return o->layers || o->paint || o->stats || o->provenance || o->report || o->dump;
+    return o->layers || o->paint || o->stats || o->provenance || o->report || o->dump || o->ebsynth;
 }
 
 /* The store of the plan, if its render can be known as finished. */

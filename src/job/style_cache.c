@@ -23,7 +23,7 @@
 
 struct FlStyleCache {
     FlCaller caller;
-    bool makes;           // see fl_style_cache_new()
+    bool makes, exact;    // see fl_style_cache_new()
     GPtrArray *instances; // of FlStyleInstance
 };
 
@@ -36,10 +36,10 @@ static void style_instance_free(FlStyleInstance *instance)
 }
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyleInstance, style_instance_free)
 
-FlStyleCache *fl_style_cache_new(bool makes)
+FlStyleCache *fl_style_cache_new(bool makes, bool exact)
 {
     FlStyleCache *cache = g_new0(FlStyleCache, 1);
-    cache->makes = makes;
+    cache->makes = makes, cache->exact = exact;
     cache->instances = g_ptr_array_new_with_free_func((GDestroyNotify)style_instance_free);
     return cache;
 }
@@ -101,12 +101,12 @@ static int window_of(const FlParams *params, const FlStyle *style)
     return params->style_window > 0 ? MIN(params->style_window, most) : 0;
 }
 
-/* True if a region's field has half the size of its picture. The papers' presets are as they say.
- */
+/* True if a region's field has half the size of its picture. The papers' presets and exports to
+ * ebsynth are as they say. */
 static bool enlarges(const FlStyleCache *cache, const FlRegionSettings *settings, const char *path)
 {
     const FlParams *params = &settings->params;
-    return params->half_field && fl_knows_depth(params) &&
+    return params->half_field && fl_knows_depth(params) && !cache->exact &&
            fl_engine_choose(settings->engine, path)->enlarges;
 }
 

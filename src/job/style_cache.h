@@ -9,8 +9,9 @@
 /** Owns its style instances until _free. */
 typedef struct FlStyleCache FlStyleCache;
 
-/** makes: styles are made larger, see fl_style_load_for(). */
-FlStyleCache *fl_style_cache_new(bool makes);
+/** makes: styles are made larger, see fl_style_load_for(); exact: fields have the size of the
+ * picture. */
+FlStyleCache *fl_style_cache_new(bool makes, bool exact);
 
 /** Sets the caller, who is told of styles that are made; before, there is none. */
 void fl_style_cache_set_caller(FlStyleCache *cache, const FlCaller *caller);

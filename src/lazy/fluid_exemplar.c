@@ -115,9 +115,8 @@ static void fill_colour(const FlExemplar *exemplar, int t, float *const plane[4]
         }
 }
 
-/* Makes the planes that are packed, on level 0; they need clearing in any case. */
-static bool make_planes(const FlExemplar *exemplar, int frame, int before, float sigma_px,
-                        FlFluidPlanes *planes, GError **error)
+bool fl_fluid_exemplar_planes(const FlExemplar *exemplar, int frame, int before, float sigma_px,
+                              FlFluidPlanes *planes, GError **error)
 {
     const int width = exemplar->level[0].width, height = exemplar->level[0].height;
     const size_t bytes = (size_t)width * (size_t)height * sizeof(float);
@@ -159,7 +158,7 @@ bool fl_fluid_exemplar_pack(FlFluidExemplar *fluid, const FlExemplar *exemplar, 
         return true;
     fl_fluid_exemplar_clear(fluid);
     g_auto(FlFluidPlanes) fine = {0};
-    if (!make_planes(exemplar, frame, before, sigma_px, &fine, error))
+    if (!fl_fluid_exemplar_planes(exemplar, frame, before, sigma_px, &fine, error))
         return false;
     for (int l = 0; l < n_levels; l++) {
         FlFluidPlanes coarse = {0};

@@ -27,6 +27,13 @@ bool fl_fluid_exemplar_pack(FlFluidExemplar *fluid, const FlExemplar *exemplar, 
                             GError **error);
 void fl_fluid_exemplar_clear(FlFluidExemplar *fluid);
 
+/**
+ * Makes the planes that are packed, on level 0. Returns: false with FL_ERROR_NO_MEMORY set; planes
+ * need clearing in any case.
+ */
+bool fl_fluid_exemplar_planes(const FlExemplar *exemplar, int frame, int before, float sigma_px,
+                              FlFluidPlanes *planes, GError **error);
+
 /** Makes a picture for fl_vote(), to be filled channel by channel; `colour` is to be freed. */
 bool fl_fluid_splines_init(FlExemplarLevel *level, int width, int height, GError **error);
 

@@ -36,9 +36,11 @@ struct FlLazy {
     FlLazyState last;
     FlRecordingEnd end;
     FlFluidExemplar source;     // of the frame in hand
-    Level level[FL_MAX_LEVELS]; // likewise
+    Level level[FL_MAX_LEVELS]; // likewise; the planes of level 0 are kept after the frame if it is
+                                // inspected
     FlNnf warm;                 // likewise: the carried field; empty in a first frame
     float *motion;              // likewise: 2 per pixel; NULL if there is no motion
+    bool shows;                 // the frame in hand is inspected when it is painted
     bool wants_terms;           // in the statistics
 };
 
@@ -329,7 +331,8 @@ static bool start_picture(FlLazy *lazy, int l, GError **error)
         return false;
     fl_fluid_picture_pack(planes, &lazy->weights, &level->picture);
     vote(lazy, l, planes, NULL);
-    fl_fluid_planes_clear(planes);
+    if (l > 0 || !lazy->shows)
+        fl_fluid_planes_clear(planes);
     return true;
 }
 
@@ -552,6 +555,7 @@ bool fl_lazy_frame(FlLazy *lazy, FlGuides *guides, uint8_t *rgb, uint8_t *alpha,
     FlFrameStats no_stats = {0};
     FlFrameStats *const s = stats ? stats : &no_stats;
     *s = (FlFrameStats){0};
+    lazy->shows = view != NULL;
     const bool done = paint(lazy, guides, rgb, alpha, s, error);
     if (view)
         *view = (FlSynthView){{0, 0, lazy->width, lazy->height},
@@ -561,6 +565,16 @@ bool fl_lazy_frame(FlLazy *lazy, FlGuides *guides, uint8_t *rgb, uint8_t *alpha,
     else
         clear_frame(lazy);
     return done;
+}
+
+bool fl_lazy_guide_pairs(const FlLazy *lazy, FlGuidePairs *pairs, GError **error)
+{
+    const FlFluidExemplar *source = &lazy->source;
+    g_auto(FlFluidPlanes) planes = {0};
+    return fl_fluid_exemplar_planes(lazy->exemplar, source->frame, source->before, lazy->sigma_px,
+                                    &planes, error) &&
+           fl_lazy_pairs(&planes, &lazy->level[0].planes, &lazy->weights, lazy->exemplar->paper,
+                         lazy->exemplar->cut_out, pairs, error);
 }
 
 GBytes *fl_lazy_save(FlLazy *lazy, GError **error)

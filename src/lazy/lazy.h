@@ -3,6 +3,7 @@
 #define FLUIDY_LAZY_LAZY_H
 
 #include "params/region_settings.h"
+#include "synth/guide_pairs.h"
 #include "synth/synth.h"
 
 /**
@@ -35,6 +36,9 @@ bool fl_lazy_frame(FlLazy *lazy, FlGuides *guides, uint8_t *rgb, uint8_t *alpha,
 
 /** The distance to which alpha extends beyond the region's mask, px. */
 float fl_lazy_reach(const FlExemplar *exemplar, const FlParams *params);
+
+/** As fl_synth_guide_pairs(). */
+bool fl_lazy_guide_pairs(const FlLazy *lazy, FlGuidePairs *pairs, GError **error);
 
 /** As fl_synth_save() and fl_synth_load(). */
 GBytes *fl_lazy_save(FlLazy *lazy, GError **error);

@@ -192,7 +192,7 @@ static FlRenderOptions options_of_frames(const FlFilm *film)
     options.output = NULL, options.format = "null", options.no_frames = false;
     options.overwrite = FL_OVERWRITE_YES, options.resume = options.dry_run = false;
     options.layers = options.paint = options.part = NULL;
-    options.report = options.stats = options.dump = NULL;
+    options.report = options.stats = options.dump = options.ebsynth = NULL;
     options.merge = false;
     return options;
 }

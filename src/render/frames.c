@@ -9,6 +9,7 @@
 #include "drawing/drawing.h"
 #include "guides/half_guides.h"
 #include "inspect/dump.h"
+#include "inspect/ebsynth.h"
 #include "io/picture_file.h"
 #include "worker/messages.h"
 
@@ -42,6 +43,35 @@ bool fl_frames_tell(const FlFrames *frames, const char *stage, int done, double 
 
 /* ---- painting -------------------------------------------------------------------------------- */
 
+static bool is_empty(const FlGuides *guides)
+{
+    for (size_t p = 0; p < (size_t)guides->width * (size_t)guides->height; p++)
+        if (guides->mask[p] >= FL_INSIDE)
+            return false;
+    return true;
+}
+
+/* The pairs of guides of a painter's new picture, if it was synthesised. */
+static bool export_picture(const FlPlan *plan, const FlPainter *painter, int frame, GError **error)
+{
+    const FlPaintedRegion *painted = &painter->result;
+    const bool rests =
+        frame > 0 && painted->stats.n_levels == 0 && !is_empty(fl_painter_guides(painter));
+    const int before = frame - painter->plan->settings.hold;
+    g_auto(FlGuidePairs) pairs = {0};
+    if (painted->stats.n_levels > 0 &&
+        !painter->plan->engine->guide_pairs(painter->paint, &pairs, error))
+        return false;
+    return fl_ebsynth_frame(plan->out.ebsynth, painted, pairs.style ? &pairs : NULL,
+                            fl_drawing_number(plan->shapes.drawing, frame),
+                            rests ? fl_drawing_number(plan->shapes.drawing, before) : -1, error);
+}
+
+static bool exports(const FlPlan *plan)
+{
+    return plan->out.ebsynth && !plan->out.merge;
+}
+
 /* Gives a painter's picture to the inspectors: statistics, report and dump. */
 static bool inspect_picture(const FlFrames *frames, int p, int frame, GError **error)
 {
@@ -52,7 +82,8 @@ static bool inspect_picture(const FlFrames *frames, int p, int frame, GError **e
                             error) &&
            (!plan->out.dump || !is_new ||
             fl_dump_frame(plan->out.dump, &painter->result, fl_painter_guides(painter),
-                          fl_drawing_number(plan->shapes.drawing, frame), error));
+                          fl_drawing_number(plan->shapes.drawing, frame), error)) &&
+           (!exports(plan) || !is_new || export_picture(plan, painter, frame, error));
 }
 
 static bool paint_one(void *data, int p, int frame, GError **error)
@@ -60,11 +91,11 @@ static bool paint_one(void *data, int p, int frame, GError **error)
     FlFrames *frames = data;
     const FlPlan *plan = frames->plan;
     FlPainter *painter = frames->painters.painter[p];
-    const bool dumps = plan->out.dump;
+    const bool taken_apart = plan->out.dump || exports(plan);
     if (fl_stop_asked(&frames->painters.shapes.stop, error))
         return false;
-    painter->wants_guides = dumps || frames->report;
-    painter->wants_view = dumps || fl_report_wants_view(frames->report, frame);
+    painter->wants_guides = taken_apart || frames->report;
+    painter->wants_view = taken_apart || fl_report_wants_view(frames->report, frame);
     const bool painted = fl_painter_frame(painter, frame, error) &&
                          (!painter->wants_guides || inspect_picture(frames, p, frame, error));
     fl_painter_drop_guides(painter);
@@ -431,7 +462,8 @@ static void recall(FlFrames *frames)
     const FlPlan *plan = frames->plan;
     const FlOutputs *o = &plan->out;
     g_autoptr(FlFacts) film = plan->cache ? fl_plan_facts_of_paint(plan) : NULL;
-    const FlKeeping keeping = {plan->cache, plan->inputs, film, .takes = !o->report && !o->dump};
+    const FlKeeping keeping = {plan->cache, plan->inputs, film,
+                               .takes = !o->report && !o->dump && !o->ebsynth};
     fl_painters_recall(&frames->painters, &plan->shapes, &keeping);
 }
 

@@ -123,7 +123,7 @@ static bool choose_style(GivenRegion *given, GError **error)
         settings->params.style_by_page ? fl_page_scale(region->width, region->height) : 1;
     settings->params.half_size = false;
     fl_params_scale_lengths(&settings->params, px);
-    given->styles = fl_style_cache_new(true);
+    given->styles = fl_style_cache_new(true, false);
     plan->style = fl_style_cache_get(given->styles, settings, px, error);
     if (plan->style && fl_field_px(plan->style->exemplar) == 2)
         fl_params_scale_lengths(&settings->params, .5f);

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/schedule.h"
+#include "inspect/ebsynth.h"
 #include "inspect/stats.h"
 #include "job/resume.h"
 #include "params/options.h"
@@ -228,6 +229,12 @@ static bool open_report(Pipeline *pipeline, GError **error)
     return !plan->out.report || pipeline->report;
 }
 
+static bool begin_export(const Pipeline *pipeline, GError **error)
+{
+    const FlOutputs *o = &pipeline->frames.plan->out;
+    return !o->ebsynth || o->merge || fl_ebsynth_begin(o->ebsynth, error);
+}
+
 /* A dry run writes no files, so an obstacle to the real run is only a note. */
 static bool note_obstacles(Pipeline *pipeline, GError **error)
 {
@@ -283,7 +290,7 @@ static bool prepare(Pipeline *pipeline, GError **error)
                               error) ||
         !fl_stats_init(&pipeline->stats, plan->out.stats,
                        plan->out.overwrite != FL_OVERWRITE_REFUSE, error) ||
-        !open_report(pipeline, error))
+        !open_report(pipeline, error) || !begin_export(pipeline, error))
         return false;
     // statistics and reports read the painters' results after writing
     frames->beside = frames->beside && !pipeline->stats.open && !pipeline->report;
@@ -335,7 +342,7 @@ static bool dry_run(Pipeline *pipeline, GError **error)
 {
     FlPlan *plan = pipeline->frames.plan;
     double frame_s = 0;
-    plan->out.dump = NULL; // it would write files
+    plan->out.dump = plan->out.ebsynth = NULL; // they would write files
     if (!fl_frames_check(&pipeline->frames, error) || !note_obstacles(pipeline, error) ||
         !fl_frames_prepare(&pipeline->frames, error))
         return false;
@@ -423,6 +430,6 @@ bool fl_render_frames(const FlRenderOptions *options, FlTakeFrame take, void *ta
     without_files.layers = without_files.report = without_files.stats = NULL;
     without_files.dump = without_files.provenance = NULL;
     if (!without_files.merge)
-        without_files.paint = NULL;
+        without_files.paint = without_files.ebsynth = NULL;
     return render(&without_files, (FlFrameTaker){take, taker}, error);
 }

@@ -7,6 +7,7 @@
 #include "guides/half_guides.h"
 #include "synth/carry.h"
 #include "synth/drying.h"
+#include "synth/patch_pairs.h"
 #include "synth/shift.h"
 #include "synth/synth_data.h"
 #include "synth/synth_levels.h"
@@ -404,6 +405,12 @@ bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats
     }
     clear_frame(synth);
     return done && pack_last(synth, rgb, error);
+}
+
+bool fl_synth_guide_pairs(const FlSynth *synth, FlGuidePairs *pairs, GError **error)
+{
+    return fl_patch_pairs(synth->exemplar, synth->params, &synth->target, &synth->last.nnf,
+                          synth->width, synth->height, pairs, error);
 }
 
 GBytes *fl_synth_save(FlSynth *synth, GError **error)

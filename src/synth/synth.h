@@ -3,6 +3,7 @@
 #define FLUIDY_SYNTH_SYNTH_H
 
 #include "base/error.h"
+#include "synth/guide_pairs.h"
 #include "synth/synth_view.h"
 
 /**
@@ -47,6 +48,12 @@ bool fl_synth_rest(FlSynth *synth);
 
 /** True if paint shows its wetness: only paint that is carried whole has a known age. */
 bool fl_synth_dries(const FlExemplar *exemplar, const FlParams *params);
+
+/**
+ * The guides of the frame just painted, which must have had a view and levels in its statistics.
+ * Returns: false with FL_ERROR_NO_MEMORY set; pairs need clearing in any case.
+ */
+bool fl_synth_guide_pairs(const FlSynth *synth, FlGuidePairs *pairs, GError **error);
 
 /**
  * The state after the frames painted so far: a synthesis made the same way that loads it paints the
