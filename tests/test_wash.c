@@ -319,7 +319,7 @@ static void a_limb_carries_its_own(void)
         }
     g_test_message("correlation %.3f along the limb, %.3f on the page", correlation(a, b, n),
                    correlation(a, same, n));
-    g_assert_cmpfloat(correlation(a, b, n), >, .7); // the light does not turn
+    g_assert_cmpfloat(correlation(a, b, n), >, .65); // the light does not turn
 }
 
 static void still_figures_do_not_change(void)
@@ -403,25 +403,64 @@ static void a_gradient_has_the_fill_of_its_body(void)
     }
 }
 
-/* Paint that dried last is darker than paint that dried first, also where their edge is lost. */
-static void a_drying_line_parts_two_tones(void)
+enum { ROW = 201 };
+
+/* The tones at a row of points that differ in one or two of the slow fields. */
+typedef struct Row {
+    FlWash wash;
+    float values[FL_WASH_PLANES][ROW], tones[ROW], hues[ROW];
+} Row;
+
+static void find_row(Row *row)
 {
-    enum { N = 201 };
-    float values[FL_WASH_PLANES][N] = {{0}}, tones[N], hues[N];
-    FlWash wash = {.style = {.wash = 1, .tide = 1}, .brush_px = 50, .width = N, .height = 1};
+    row->wash = (FlWash){
+        .style = {.wash = 1, .tide = 1, .passes = 1}, .brush_px = 50, .width = ROW, .height = 1};
     for (int k = 0; k < FL_WASH_PLANES; k++)
-        wash.plane[k] = values[k];
+        row->wash.plane[k] = row->values[k];
+    fl_wash_find_tones(&row->wash, row->tones, row->hues);
+}
+
+static float most_step(const Row *row)
+{
+    float most = 0;
+    for (int i = 1; i < ROW; i++)
+        most = MAX(most, fabsf(row->tones[i] - row->tones[i - 1]));
+    return most;
+}
+
+/* Paint that water carried lies beyond the place where it stopped, also where the edge is lost. */
+static void a_front_parts_two_tones(void)
+{
     for (int found = 0; found < 2; found++) {
-        for (int i = 0; i < N; i++) {
-            values[FL_WASH_TIDE][i] = (float)(i - N / 2), values[FL_WASH_TIDES][i] = (float)found;
-            values[FL_WASH_LINES][i] = 1, values[FL_WASH_BLOOM][i] = 1000;
+        Row row = {0};
+        for (int i = 0; i < ROW; i++) {
+            row.values[FL_WASH_FRONT][i] = (float)(i - ROW / 2);
+            row.values[FL_WASH_FRONTS][i] = (float)found, row.values[FL_WASH_LINES][i] = 1;
         }
-        fl_wash_find_tones(&wash, tones, hues);
-        g_assert_cmpfloat(tones[N - 1] - tones[0], >, .2f);
-        float most = 0; // of a step
-        for (int i = 1; i < N; i++)
-            most = MAX(most, fabsf(tones[i] - tones[i - 1]));
-        g_assert_true(found ? most > .05f : most < .01f);
+        find_row(&row);
+        g_assert_cmpfloat(row.tones[ROW - 1] - row.tones[0], >, .2f);
+        g_assert_true(found ? most_step(&row) > .05f : most_step(&row) < .01f);
+    }
+}
+
+/* Along a front, teeth of uneven length run on the way of the water, and none back; along the edge
+ * of a pass, bristles show where the brush is dry. */
+static void fronts_have_teeth_and_dry_passes_bristles(void)
+{
+    static const struct {
+        float away, dry;
+        bool uneven;
+    } rows[] = {{10, 0, true}, {-9, 0, false}, {60, 0, false}, {60, .9f, true}};
+    for (size_t k = 0; k < G_N_ELEMENTS(rows); k++) {
+        Row row = {0};
+        for (int i = 0; i < ROW; i++) {
+            row.values[FL_WASH_FRONT][i] = rows[k].away, row.values[FL_WASH_FRONTS][i] = 1;
+            row.values[FL_WASH_DRY][i] = rows[k].dry, row.values[FL_WASH_LINES][i] = 1;
+            row.values[FL_WASH_ALONG][i] = (float)i, row.values[FL_WASH_PASS][i] = .002f * (float)i;
+        }
+        find_row(&row);
+        g_test_message("row %zu: step %.3f", k, most_step(&row));
+        g_assert_true(rows[k].uneven ? most_step(&row) > .03f : most_step(&row) < .01f);
     }
 }
 
@@ -452,26 +491,27 @@ static void dots_and_lines_have_none(void)
     g_assert_cmpfloat(spread[2] - spread[0], <, .02f);
 }
 
-/* Where calm is, the step between lines goes; elsewhere it stays, and at the rim everywhere. */
-static void a_calm_wash_keeps_rims(void)
+/* Where calm is, the step between lines goes; at the rim it stays in places and is lost in others.
+ */
+static void a_calm_wash_keeps_some_of_the_rim(void)
 {
     const FlWashStyle calm = {.wash = 1, .calm = 1};
     g_autofree Tones *tones = lay_still(DISC, &calm, 200);
-    int middle = 0, lost = 0, rim = 0;
+    int middle = 0, even = 0, rim = 0, found = 0, lost = 0;
     for (int y = 11; y < H - 11; y++)
         for (int x = 60; x < W - 60; x++) {
             const double depth = 140 - hypot(x - 200, y - 150);
             const float step = fabsf(tones->tone[y * W + x] - tones->tone[(y + 1) * W + x]);
-            if (depth > 3 && depth < 5) {
-                rim++;
-                g_assert_cmpfloat(step, >, .3f); // ln(1224 / 824) is .4
-            }
-            if (depth > 20)
-                middle++, lost += step < .1f;
+            if (depth > 3 && depth < 5)
+                rim++, found += step > .3f, lost += step < .1f; // ln(1224 / 824) is .4
+            if (depth > 35)
+                middle++, even += step < .1f;
         }
-    g_test_message("of %d px %d are lost", middle, lost);
-    g_assert_cmpint(rim, >, 500);
-    g_assert_cmpint(lost, >, middle * 9 / 10);
+    g_test_message("of the rim %d/%d are found, %d lost; of the middle %d/%d are even", found, rim,
+                   lost, even, middle);
+    g_assert_cmpint(found, >, rim / 10);
+    g_assert_cmpint(lost, >, rim / 10);
+    g_assert_cmpint(even, >, 99 * middle / 100);
 }
 
 static void a_heart_is_light(void)
@@ -694,10 +734,12 @@ int main(int argc, char **argv)
                     touching_shapes_of_one_fill_are_one_wash);
     g_test_add_func("/wash/a-gradient-has-the-fill-of-its-body",
                     a_gradient_has_the_fill_of_its_body);
-    g_test_add_func("/wash/a-drying-line-parts-two-tones", a_drying_line_parts_two_tones);
+    g_test_add_func("/wash/a-front-parts-two-tones", a_front_parts_two_tones);
+    g_test_add_func("/wash/fronts-have-teeth-and-dry-passes-bristles",
+                    fronts_have_teeth_and_dry_passes_bristles);
     g_test_add_func("/wash/parts-that-move-apart-are-mixed", parts_that_move_apart_are_mixed);
     g_test_add_func("/wash/dots-and-lines-have-none", dots_and_lines_have_none);
-    g_test_add_func("/wash/a-calm-wash-keeps-rims", a_calm_wash_keeps_rims);
+    g_test_add_func("/wash/a-calm-wash-keeps-some-of-the-rim", a_calm_wash_keeps_some_of_the_rim);
     g_test_add_func("/wash/a-heart-is-light", a_heart_is_light);
     g_test_add_func("/wash/threads-and-parts-do-not-matter", threads_and_parts_do_not_matter);
     g_test_add_func("/contacts/wet-fields-run-into-each-other", wet_fields_run_into_each_other);

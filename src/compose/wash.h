@@ -10,12 +10,11 @@ typedef enum FlWashPlane {
     FL_WASH_TONE,   // ln of the amount: light and shadow side, pools
     FL_WASH_HUE,    // balance of the pigments, without lines
     FL_WASH_PASS,   // place across the brush: each whole number is a pass
-    FL_WASH_CRISP,  // 1 where the edge of a pass is found, 0 where it is lost
+    FL_WASH_DRY,    // -1..1: of the brush; where it is dry, edges are found and bristles show
     FL_WASH_LINES,  // strength of passes, 0..1
-    FL_WASH_TIDE,   // distance from the drying line, px of the page; below 0 it is dry
-    FL_WASH_TIDES,  // strength of drying lines, 0..1
-    FL_WASH_BLOOM,  // distance from the rim of a bloom, px of the page; below 0 it is inside
-    FL_WASH_BLOOMS, // strength of blooms, 0..1
+    FL_WASH_FRONT,  // distance from where water stopped, px of the page; below 0 it was flooded
+    FL_WASH_FRONTS, // strength of fronts, 0..2
+    FL_WASH_ALONG,  // place along the front that is next, px of the page
     FL_WASH_CALM,   // share of the recording's unevenness that is lost, 0..1
     FL_WASH_PLANES,
 } FlWashPlane;

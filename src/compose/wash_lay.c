@@ -1,5 +1,6 @@
 #include "base/curves.h"
 #include "base/density.h"
+#include "base/noise.h"
 #include "base/rng.h"
 #include "base/schedule.h"
 #include "compose/ink.h"
@@ -8,6 +9,7 @@
 #include <math.h>
 
 #define LOADS 256     // of the brush, that repeat
+#define HAIRS 1024    // half px of a line of hairs, that repeats
 #define TONE_ONE 256  // steps of ln of a factor
 #define TONE_LEAST -2 // at 64 * 255 a factor is one, and 4 is the most
 #define TONES (TONE_ONE * 27 / 8)
@@ -17,6 +19,7 @@ typedef struct Brush {
     const FlWash *wash;
     float white;
     float load[LOADS + 1]; // of each pass, -1..1
+    float hair[HAIRS];     // of the brush, and of a front, 0..1
     uint16_t factor[TONES];
 } Brush;
 
@@ -27,6 +30,10 @@ static void brush_init(Brush *brush, const FlWash *wash, float white)
     for (int k = 0; k < LOADS; k++)
         brush->load[k] = 2 * fl_rng_float(&rng) - 1;
     brush->load[LOADS] = brush->load[0];
+    for (int k = 0; k < HAIRS; k++) {
+        const float even = fl_noise_octaves(brush->wash->key, (float)k * .125f, .5f, 2, .8f);
+        brush->hair[k] = fl_clamp(.5f + .8f * even, 0, 1);
+    }
     for (int i = 0; i < TONES; i++) {
         const float more = 1.442695f * ((float)i / TONE_ONE + TONE_LEAST);
         brush->factor[i] = fl_density_level((int32_t)lrintf((2 - more) * FL_DENSITY_ONE));
@@ -36,21 +43,25 @@ static void brush_init(Brush *brush, const FlWash *wash, float white)
 /* The values of the slow fields at a pixel. */
 typedef float Slow[FL_WASH_PLANES];
 
-/* A drying line: sharp towards what was dry, and a slope on its wet side. */
-static inline float tide_at(const Slow slow)
+/* The hair at a place, px of the page. */
+static inline float hair_at(const Brush *brush, float px)
 {
-    const float away = slow[FL_WASH_TIDE];
-    return slow[FL_WASH_TIDES] * (away < 0 ? fl_decay(-away * .45f) : fl_decay(away * .045f));
+    return brush->hair[(int)floorf(2 * px) & (HAIRS - 1)];
 }
 
-/* Light inside, with a dark rim that is sharp outside. */
-static inline float bloom_at(const Slow slow)
+/* Water carries paint to where it stops: a line, sharp towards what it flooded, from which teeth of
+ * uneven length run on the way that the water went. */
+static inline float front_at(const Brush *brush, const Slow slow)
 {
-    const float away = slow[FL_WASH_BLOOM], found = slow[FL_WASH_BLOOMS];
-    if (away > 12 || found <= 0)
+    const float away = slow[FL_WASH_FRONT], strength = slow[FL_WASH_FRONTS];
+    if (strength <= 0 || away < -12 || away > 90)
         return 0;
-    return away > 0 ? .30f * found * fl_decay(.5f * away)
-                    : found * (.30f * fl_decay(-away / 7) - .40f * fl_smooth(-away / 24));
+    const float hair = hair_at(brush, slow[FL_WASH_ALONG]);
+    const float past = away + 2.5f * hair - 1;
+    if (past < 0)
+        return strength * fl_decay(-past * .7f);
+    return strength *
+           (.65f * fl_smooth(1 - past / (5 + 30 * hair * hair)) + .35f * fl_decay(past * .05f));
 }
 
 /* The ln of the factor on the amount by a wash of strength 1, and the balance of the pigments, at a
@@ -61,14 +72,19 @@ static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
     const FlWashStyle *style = &brush->wash->style;
     const float pass = floorf(slow[FL_WASH_PASS]), part = slow[FL_WASH_PASS] - pass;
     const int k = (int)pass & (LOADS - 1);
-    const float width = .5f - .455f * slow[FL_WASH_CRISP];
+    const float crisp = fl_smooth((slow[FL_WASH_DRY] + .05f) / .3f);
+    const float dry = fl_smooth((slow[FL_WASH_DRY] - .35f) / .4f);
+    const float width = .5f - .455f * crisp;
     const float next = fl_smooth((part - 1 + width) / width);
-    const float load = brush->load[k] + (brush->load[k + 1] - brush->load[k]) * next;
-    const float tide = tide_at(slow), lost_px = 3 + 60 * (1 - slow[FL_WASH_TIDES]);
-    const float wet = slow[FL_WASH_LINES] * (fl_smooth(.5f + slow[FL_WASH_TIDE] / lost_px) - .5f);
-    *hue = slow[FL_WASH_HUE] + slow[FL_WASH_LINES] * .25f * load + .3f * tide;
-    return slow[FL_WASH_TONE] + .25f * style->passes * slow[FL_WASH_LINES] * load +
-           style->tide * (.38f * tide + .22f * wet) + style->blooms * bloom_at(slow);
+    const float bristle =
+        dry * (hair_at(brush, 1.7f * slow[FL_WASH_PASS] * brush->wash->brush_px) - .5f);
+    const float load = brush->load[k] + (brush->load[k + 1] - brush->load[k]) * next - bristle;
+    const float front = front_at(brush, slow),
+                lost_px = 3 + 60 * fl_clamp(1 - slow[FL_WASH_FRONTS], 0, 1);
+    const float wet = slow[FL_WASH_LINES] * (fl_smooth(.5f + slow[FL_WASH_FRONT] / lost_px) - .5f);
+    *hue = slow[FL_WASH_HUE] + slow[FL_WASH_LINES] * .25f * load + .3f * front;
+    return slow[FL_WASH_TONE] + .25f * style->passes * slow[FL_WASH_LINES] * load + .5f * front +
+           .22f * MAX(style->tide, style->blooms) * wet;
 }
 
 void fl_wash_find_tones(const FlWash *wash, float *tones, float *hues)
@@ -83,14 +99,15 @@ void fl_wash_find_tones(const FlWash *wash, float *tones, float *hues)
     }
 }
 
-/* calm: 1 for the amount that is the fill, 0 for that of the recording. */
+/* calm: 1 for the amount that is the fill, 0 for that of the recording, whose edges stay. */
 static int amount_of(const Brush *brush, int recorded, float calm, float tone)
 {
-    const float amount = (float)recorded + calm * (float)(FL_AMOUNT_ONE - recorded);
+    const float inside = fl_clamp(2.5f / FL_AMOUNT_ONE * (float)recorded - .5f, 0, 1);
+    const float amount = (float)recorded + calm * inside * (float)(FL_AMOUNT_ONE - recorded);
     const int i = (int)((fl_clamp(tone, TONE_LEAST, 1.37f) - TONE_LEAST) * TONE_ONE);
     const uint32_t laid = ((uint32_t)amount * brush->factor[i] + 64 * 255 / 2) / (64 * 255);
-    const float even = .9f * FL_AMOUNT_ONE + .1f * amount;
-    const float mixed = (float)laid + brush->white * (even - (float)laid);
+    const float bare = .9f * FL_AMOUNT_ONE + .1f * amount;
+    const float mixed = (float)laid + brush->white * (bare - (float)laid);
     return MIN((int)mixed, FL_AMOUNTS - 1);
 }
 

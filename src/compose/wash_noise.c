@@ -12,9 +12,10 @@ enum {
     KEY_TONE,
     KEY_HUE,
     KEY_PASS,
-    KEY_CRISP,
+    KEY_DRY,
     KEY_TIDE,
-    KEY_TIDES,
+    KEY_FRONTS,
+    KEY_LOBES,
     KEY_BLOOM,
 };
 
@@ -59,93 +60,160 @@ typedef float Values[FL_WASH_PLANES][FL_NOISE_ROW];
 /* Passes of the brush lie across the light's slope, each with a wavering edge. */
 static void find_passes(const FlWashField *field, const Places *at, Values values)
 {
-    static const float wide[2] = {170, 170}, middle[2] = {42, 42}, fine[2] = {13, 13};
+    static const float wide[2] = {170, 170}, middle[2] = {42, 42};
     static const float cell[2] = {90, 60};
     const FlWash *wash = field->wash;
     const uint64_t key = fl_key(wash->key, KEY_PASS);
-    float waver[3][FL_NOISE_ROW];
+    float waver[2][FL_NOISE_ROW];
     noise_at(fl_key(key, 1), at, wide, 0, 1, 1, waver[0]);
     noise_at(fl_key(key, 2), at, middle, 0, 1, 1, waver[1]);
-    noise_at(fl_key(key, 3), at, fine, 0, 1, 1, waver[2]);
-    noise_at(fl_key(wash->key, KEY_CRISP), at, cell, 0, 1, 1, values[FL_WASH_CRISP]);
+    noise_at(fl_key(wash->key, KEY_DRY), at, cell, 0, 1, 1, values[FL_WASH_DRY]);
     for (int i = 0; i < at->n; i++) {
         const float across = field->across[1] * at->y[i] + field->across[0] * at->x[i];
-        values[FL_WASH_PASS][i] =
-            across / wash->brush_px + .55f * waver[0][i] + .10f * waver[1][i] + .025f * waver[2][i];
-        values[FL_WASH_CRISP][i] = fl_smooth((values[FL_WASH_CRISP][i] + .05f) / .3f);
+        values[FL_WASH_PASS][i] = across / wash->brush_px + .4f * waver[0][i] + .04f * waver[1][i];
     }
 }
 
-/* The distance from the drying line at some points, px: that of a level line of noise. */
-static void find_tide(const FlWash *wash, const Places *at, float *tide)
+/* The distance from the drying line: that of a level line of noise. */
+static void find_tide(const FlWash *wash, const Places *at, float *away)
 {
-    static const float wide[2] = {210, 190}, fine[2] = {26, 26};
-    float crinkle[FL_NOISE_ROW];
-    noise_at(fl_key(wash->key, KEY_TIDE), at, wide, .25f, 1, 1, tide);
-    noise_at(fl_key(wash->key, KEY_TIDE + 100), at, fine, 0, 2, .6f, crinkle);
+    static const float wide[2] = {210, 190}, lobes[2] = {60, 60};
+    float lobe[FL_NOISE_ROW];
+    noise_at(fl_key(wash->key, KEY_TIDE), at, wide, .25f, 1, 1, away);
+    noise_at(fl_key(wash->key, KEY_TIDE + 100), at, lobes, .2f, 1, 1, lobe);
     for (int i = 0; i < at->n; i++)
-        tide[i] = (tide[i] + .055f * crinkle[i]) / .011f;
-}
-
-#define FEATHER_PX 9 // width of the feathers in which paint runs back from a drying line
-
-/* Moves points straight to the drying line, as far as it is near. */
-static void move_to_line(const FlWash *wash, const Places *at, const float *tide, Places *line)
-{
-    float beside[2][FL_NOISE_ROW];
-    for (int k = 0; k < 2; k++) {
-        *line = *at;
-        for (int i = 0; i < at->n; i++)
-            *(k ? &line->y[i] : &line->x[i]) += 6;
-        find_tide(wash, line, beside[k]);
-    }
-    for (int i = 0; i < at->n; i++) {
-        const float dx = (beside[0][i] - tide[i]) / 6, dy = (beside[1][i] - tide[i]) / 6;
-        const float far = fl_clamp(tide[i], -40, 40) / (dx * dx + dy * dy + .1f);
-        line->x[i] = at->x[i] - far * dx, line->y[i] = at->y[i] - far * dy;
-    }
-}
-
-/* Drying lines, whose edges are drawn out into feathers. */
-static void find_tides(const FlWash *wash, const Places *at, Values values)
-{
-    static const float place[2] = {120, 120}, feather[2] = {FEATHER_PX, FEATHER_PX};
-    float *tide = values[FL_WASH_TIDE], out[FL_NOISE_ROW];
-    Places line;
-    find_tide(wash, at, tide);
-    move_to_line(wash, at, tide, &line);
-    noise_at(fl_key(wash->key, KEY_TIDE + 200), &line, feather, 0, 1, 1, out);
-    noise_at(fl_key(wash->key, KEY_TIDES), at, place, 0, 1, 1, values[FL_WASH_TIDES]);
-    for (int i = 0; i < at->n; i++) {
-        tide[i] += fl_clamp(.3f * tide[i] + 5, 2, 12) * out[i];
-        values[FL_WASH_TIDES][i] = fl_smooth((values[FL_WASH_TIDES][i] - .08f) / .35f);
-    }
+        away[i] = wash->style.tide > 0 ? (away[i] + .08f * lobe[i]) / .011f : 1000;
 }
 
 #define BLOOM_CELL 260 // one in this square at most
 
-/* Drops that ran into the damp wash: discs with a crinkled rim that is found over a part of it. */
-static void find_blooms(const FlWash *wash, const Places *at, Values values)
+/* A drop that ran into the damp wash, or -1. */
+typedef struct Drop {
+    float radius, dx, dy; // of the point from its middle
+    float kind;           // 0..1
+} Drop;
+
+static Drop drop_at(const FlWash *wash, const Places *at, int i)
 {
-    static const float lobes[2] = {34, 34}, fine[2] = {12, 12}, place[2] = {70, 70};
-    const uint64_t key = fl_key(wash->key, KEY_BLOOM);
-    float bend[FL_NOISE_ROW], crinkle[FL_NOISE_ROW];
-    noise_at(fl_key(key, 1), at, lobes, 0, 1, 1, bend);
-    noise_at(fl_key(key, 2), at, fine, 0, 2, .6f, crinkle);
-    noise_at(fl_key(key, 3), at, place, 0, 1, 1, values[FL_WASH_BLOOMS]);
+    const int32_t cx = (int32_t)floorf(at->x[i] / BLOOM_CELL);
+    const int32_t cy = (int32_t)floorf(at->y[i] / BLOOM_CELL);
+    FlRng rng = {fl_key(fl_key(wash->key, KEY_BLOOM), (uint64_t)(uint32_t)cx << 32 | (uint32_t)cy)};
+    Drop drop = {.kind = fl_rng_float(&rng)};
+    drop.radius = 26 + 34 * fl_rng_float(&rng);
+    const float room = BLOOM_CELL - 3 * drop.radius;
+    drop.dx = at->x[i] - (float)cx * BLOOM_CELL - 1.5f * drop.radius - room * fl_rng_float(&rng);
+    drop.dy = at->y[i] - (float)cy * BLOOM_CELL - 1.5f * drop.radius - room * fl_rng_float(&rng);
+    return drop;
+}
+
+/* The distance from the rim of a bloom. */
+static void find_bloom(const FlWash *wash, const Places *at, float *away)
+{
+    static const float lobes[2] = {44, 44};
+    float bend[FL_NOISE_ROW];
+    noise_at(fl_key(wash->key, KEY_BLOOM), at, lobes, 0, 1, 1, bend);
     for (int i = 0; i < at->n; i++) {
-        const int32_t cx = (int32_t)floorf(at->x[i] / BLOOM_CELL);
-        const int32_t cy = (int32_t)floorf(at->y[i] / BLOOM_CELL);
-        FlRng rng = {fl_key(key, (uint64_t)(uint32_t)cx << 32 | (uint32_t)cy)};
-        const bool any = fl_rng_float(&rng) < .25f;
-        const float radius = 26 + 34 * fl_rng_float(&rng), room = BLOOM_CELL - 3 * radius;
-        const float dx =
-            at->x[i] - (float)cx * BLOOM_CELL - 1.5f * radius - room * fl_rng_float(&rng);
-        const float dy =
-            at->y[i] - (float)cy * BLOOM_CELL - 1.5f * radius - room * fl_rng_float(&rng);
-        const float away = sqrtf(dx * dx + 1.4f * dy * dy) - radius + .35f * radius * bend[i];
-        values[FL_WASH_BLOOM][i] = any ? away + 5 * crinkle[i] : 1000;
-        values[FL_WASH_BLOOMS][i] = any ? fl_smooth(.2f + values[FL_WASH_BLOOMS][i]) : 0;
+        const Drop drop = drop_at(wash, at, i);
+        away[i] = sqrtf(drop.dx * drop.dx + 1.4f * drop.dy * drop.dy) - drop.radius +
+                  .35f * drop.radius * bend[i];
+        if (wash->style.blooms <= 0 || drop.kind > .25f)
+            away[i] = 1000;
+    }
+}
+
+/* The distance from the front that is next, and the one with blooms over that without. */
+static void find_front(const FlWash *wash, const Places *at, float *away, float *bloom)
+{
+    find_tide(wash, at, away);
+    find_bloom(wash, at, bloom);
+    for (int i = 0; i < at->n; i++) {
+        const float tide = away[i];
+        away[i] = MIN(tide, bloom[i]);
+        bloom[i] = fl_smooth(.5f + (tide - bloom[i]) / 30);
+    }
+}
+
+/* Moves points straight to the front, as far as it is near, and makes its distance one in px. */
+static void move_to_front(const FlWash *wash, const Places *at, float *away, Places *front)
+{
+    float beside[2][FL_NOISE_ROW], bloom[FL_NOISE_ROW];
+    for (int k = 0; k < 2; k++) {
+        *front = *at;
+        for (int i = 0; i < at->n; i++)
+            *(k ? &front->y[i] : &front->x[i]) += 3;
+        find_front(wash, front, beside[k], bloom);
+    }
+    for (int i = 0; i < at->n; i++) {
+        const float dx = (beside[0][i] - away[i]) / 3, dy = (beside[1][i] - away[i]) / 3;
+        const float steep = sqrtf(dx * dx + dy * dy + .05f);
+        away[i] /= steep;
+        const float far = fl_clamp(away[i], -40, 40) / steep;
+        front->x[i] = at->x[i] - far * dx, front->y[i] = at->y[i] - far * dy;
+    }
+}
+
+#define NEAR_PX 100 // of a front: where its shape matters
+
+/* The points that are near a front, and which they are. */
+static void find_near(const Places *at, const float *away, Places *near, int *which)
+{
+    near->n = 0;
+    for (int i = 0; i < at->n; i++) {
+        if (fabsf(away[i]) > NEAR_PX)
+            continue;
+        const int k = near->n++;
+        near->x[k] = at->x[i], near->y[k] = at->y[i];
+        near->bend_x[k] = at->bend_x[i], near->bend_y[k] = at->bend_y[i];
+        which[k] = i;
+    }
+}
+
+/* Fronts at which water stopped: drying lines and rims of blooms, as lobes between cusps. */
+static void find_fronts(const FlWash *wash, const Places *at, Values values)
+{
+    static const float place[2] = {110, 110}, wide[2] = {34, 34}, fine[2] = {12, 12};
+    const uint64_t key = fl_key(wash->key, KEY_LOBES);
+    float *all = values[FL_WASH_FRONT], *fronts = values[FL_WASH_FRONTS];
+    float away[FL_NOISE_ROW], bloom[FL_NOISE_ROW], lobe[FL_NOISE_ROW], small[FL_NOISE_ROW];
+    float place_of[FL_NOISE_ROW];
+    int which[FL_NOISE_ROW];
+    Places near, front;
+    find_front(wash, at, all, bloom);
+    find_near(at, all, &near, which);
+    for (int i = 0; i < at->n; i++)
+        fronts[i] = values[FL_WASH_ALONG][i] = 0;
+    for (int k = 0; k < near.n; k++)
+        away[k] = all[which[k]];
+    move_to_front(wash, &near, away, &front);
+    noise_at(fl_key(key, 1), &front, wide, 0, 1, 1, lobe);
+    noise_at(fl_key(key, 2), &front, fine, 0, 1, 1, small);
+    noise_at(fl_key(wash->key, KEY_FRONTS), &near, place, 0, 1, 1, place_of);
+    for (int k = 0; k < near.n; k++) {
+        const int i = which[k];
+        const float ends = fl_smooth(3 - 3 * fabsf(all[i]) / NEAR_PX);
+        all[i] = away[k] - 10 * (fabsf(lobe[k]) - .25f) - 4 * (fabsf(small[k]) - .25f);
+        fronts[i] = wash->style.tide * fl_smooth((place_of[k] - .02f) / .35f) * (1 - bloom[i]) +
+                    wash->style.blooms * fl_smooth(.2f + place_of[k]) * bloom[i];
+        fronts[i] *= ends;
+        values[FL_WASH_ALONG][i] = .8f * front.x[k] - .6f * front.y[k] + 14 * lobe[k];
+    }
+}
+
+/* Accidents: a charged drop of paint, or a spot from which paint was lifted. */
+static void add_accidents(const FlWash *wash, const Places *at, Values values)
+{
+    static const float lobes[2] = {40, 26};
+    float bend[FL_NOISE_ROW];
+    noise_at(fl_key(wash->key, KEY_BLOOM + 100), at, lobes, 0, 2, .6f, bend);
+    for (int i = 0; i < at->n; i++) {
+        const Drop drop = drop_at(wash, at, i);
+        const float radius = drop.kind < .55f ? .75f * drop.radius : .3f * drop.radius;
+        const float far =
+            sqrtf(.7f * drop.dx * drop.dx + drop.dy * drop.dy) / radius + .6f * bend[i];
+        const float part = drop.kind > .3f && drop.kind < .8f ? fl_smooth(1.2f - far) : 0;
+        const float paint = wash->style.blooms * (drop.kind < .55f ? part : -part);
+        values[FL_WASH_TONE][i] += 1.2f * paint;
+        values[FL_WASH_HUE][i] += paint;
     }
 }
 
@@ -156,13 +224,13 @@ static void find_values(const FlWashField *field, const Places *at, Values value
     noise_at(fl_key(wash->key, KEY_TONE), at, tone, .35f, 2, .5f, values[FL_WASH_TONE]);
     noise_at(fl_key(wash->key, KEY_HUE), at, hue, .5f, 3, .55f, values[FL_WASH_HUE]);
     find_passes(field, at, values);
-    find_tides(wash, at, values);
-    find_blooms(wash, at, values);
+    find_fronts(wash, at, values);
+    add_accidents(wash, at, values);
 }
 
 static bool is_mixed(int plane)
 {
-    return plane != FL_WASH_PASS && plane != FL_WASH_TIDE && plane != FL_WASH_BLOOM;
+    return plane != FL_WASH_PASS && plane != FL_WASH_FRONT && plane != FL_WASH_ALONG;
 }
 
 /* Adds the values of a part to those of the parts before it: slow ones are mixed by weight; lines

@@ -304,7 +304,7 @@ void fl_field_find_middle(const FlWashField *field, float *middle)
 {
     const size_t n = fl_wash_points(field->wash);
     memcpy(middle, field->mask, n * sizeof *middle);
-    fl_field_blur(field, middle, 6);
+    fl_field_blur(field, middle, 12);
     for (size_t i = 0; i < n; i++)
         middle[i] = fl_smooth((middle[i] - .9f) / .1f);
 }

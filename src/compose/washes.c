@@ -45,7 +45,7 @@ static void put_together(const FlWashField *field)
     float *tone = wash->plane[FL_WASH_TONE], *hue = wash->plane[FL_WASH_HUE];
     const size_t n = fl_wash_points(wash);
     const float lit = light_of(field);
-    const float uneven = .12f + .1f * fl_smooth(field->size / 200 - 1); // puddles need room
+    const float uneven = .16f + .1f * fl_smooth(field->size / 200 - 1); // puddles need room
     const float quiet = 1 - .45f * fl_smooth(field->size / 300 - 1); // a ground is laid with care
     fl_field_find_pools(field, pool);
     fl_field_find_heart(field, heart);
@@ -67,10 +67,12 @@ static void put_together(const FlWashField *field)
         tone[i] *= breadth[i];
         hue[i] *= share_of_hue[i];
         wash->plane[FL_WASH_LINES][i] = lines;
-        wash->plane[FL_WASH_TIDES][i] *= lines;
-        wash->plane[FL_WASH_BLOOMS][i] *= lines;
-        wash->plane[FL_WASH_CALM][i] *=
-            wash->style.calm * MIN(washed * wash->style.wash, 1) * share_at(field, FL_MAP_CALM, i);
+        wash->plane[FL_WASH_FRONTS][i] *= lines;
+        const float middle = wash->plane[FL_WASH_CALM][i]; // the rim is found here and lost there
+        const float lost = .9f * fl_smooth(.65f + 1.2f * wash->plane[FL_WASH_DRY][i]);
+        const float calm = wash->style.calm * share_at(field, FL_MAP_CALM, i);
+        wash->plane[FL_WASH_CALM][i] =
+            MIN(washed * wash->style.wash, 1) * (calm * middle + lost * (1 - middle));
     }
     fl_wash_find_tones(wash, tones, hues);
     fl_field_centre(field, tones, breadth, tone);
