@@ -68,7 +68,7 @@ static void selectors_choose_elements(void)
                                          ":nth-last-child(1)",
                                          "path:only-of-type",
                                          "path:first-of-type",
-                                         "svg|path",
+                                         "*|path",
                                          "*|path",
                                          ":nth-child(1 of path)",
                                          ":is(:nonsense, path)",
@@ -81,6 +81,7 @@ static void selectors_choose_elements(void)
                                          "path/* and */.k",
                                          "rect, path"};
     static const char *const left[] = {"rect",
+                                       "svg|path",
                                        "#b",
                                        ".K",
                                        ".k .l",
@@ -143,6 +144,9 @@ static void the_strongest_declaration_wins(void)
         {"@supports not (fill: red){path{fill:#111111}}", ""},
         {"/* path{fill:red} */path{fill:#111111}", "#111111"},
         {".x}path{fill:#111111}", ""},
+        {"s|path{fill:#111111}", ""},
+        {"@namespace s url(http://www.w3.org/2000/svg);s|path{fill:#111111}", "#111111"},
+        {"@namespace h url(http://www.w3.org/1999/xhtml);h|path{fill:#111111}", ""},
         {"path{fill:#111111}}rect{}", "#111111"},
         {"path{fill:#111111;all:unset}", "inherit"},
         {"path{all:unset;fill:#111111}", "#111111"},
@@ -179,6 +183,8 @@ static void values_become_those_of_svg_1(void)
         {"fill='var(--none, #123456)'", "fill", "#123456"},
         {"style='--a:var(--b);--b:var(--a);fill:var(--a)'", "fill", "inherit"},
         {"style='fill:initial'", "fill", "black"},
+        {"style='stroke:red;fill:#123456}'", "fill", ""},
+        {"style='}fill:#123456;stroke:#654321'", "stroke", "#654321"},
         {"style='stroke:unset'", "stroke", "inherit"},
         {"style='opacity:unset'", "opacity", "1"},
         {"style='stroke-width:calc(1px + 2 * (3px - 1px))'", "stroke-width", "5"},
@@ -376,11 +382,23 @@ static void gaps_of_librsvg_are_filled(void)
     assert_value("<path id='a' style='--c: ;stroke:var(--c, red)'/>", "stroke", "inherit");
     assert_value("<feOffset id='a' dx='5%'/>", "dx", "");
     assert_value("<symbol id='a'/>", "overflow", "hidden");
+    assert_value("<path id='a' d='M1 2M3 4' stroke-linecap='round'/>", "stroke-linecap", "butt");
+    assert_value("<path id='a' d='M1 2z' stroke-linecap='round'/>", "stroke-linecap", "round");
+    assert_value("<g style='dominant-baseline:middle'><text id='a'/></g>", "baseline-shift",
+                 "-27%");
+    assert_value("<text dominant-baseline='middle'><tspan id='a' dominant-baseline='auto'/></text>",
+                 "baseline-shift", "27%");
+    assert_value("<text id='a' alignment-baseline='central' baseline-shift='9'/>", "baseline-shift",
+                 "9");
+    assert_value("<g xml:lang='de-AT'><style>:lang(DE){fill:#123456}</style><path id='a'/></g>",
+                 "fill", "#123456");
+    assert_value("<g xml:lang='den'><style>:lang(de){fill:#123456}</style><path id='a'/></g>",
+                 "fill", "");
     assert_value("<marker id='a' refX='center'/>", "refX", "");
     g_autoptr(FlSvg) svg =
         open_svg_of("<filter><feFlood/><feDropShadow dx='1' result='r'/></filter>"
                     "<linearGradient x2='0'><stop id='s' offset='.123'/><stop/></linearGradient>"
-                    "<use href='#s'/>"
+                    "<use href='#s'/><symbol id='w' width='7' height='5'/><use href='#w'/>"
                     "<image href='data:image/svg+xml,%3csvg xmlns=\"http://www.w3.org/2000/svg\" "
                     "width=\"2\" height=\"1\"/%3e'/>");
     size_t bytes = 0;
@@ -388,6 +406,7 @@ static void gaps_of_librsvg_are_filled(void)
     g_assert_nonnull(strstr(text, "<feMerge dx=\"1\" result=\"r\""));
     g_assert_nonnull(strstr(text, "<feMergeNode in=\"fl-before-0\"/>"));
     g_assert_null(strstr(text, "<stop id"));
+    g_assert_nonnull(strstr(text, "svg\" width=\"7\" height=\"5\" overflow"));
     g_assert_nonnull(strstr(text, "svg+xml;base64,"));
 }
 

@@ -15,7 +15,8 @@ typedef enum SimpleKind {
     SIMPLE_ROOT,
     SIMPLE_EMPTY,
     SIMPLE_LINK,
-    SIMPLE_ANY, // :is(), :where()
+    SIMPLE_LANGUAGE, // :lang(), by xml:lang
+    SIMPLE_ANY,      // :is(), :where()
     SIMPLE_NOT,
     SIMPLE_ALWAYS,
     SIMPLE_NEVER, // :hover and other states that a still picture does not have
@@ -194,12 +195,17 @@ static unsigned largest_specificity(const GPtrArray *list)
 static bool read_function(const char *name, const char *arguments, Simple *simple, int depth)
 {
     static const char *const any[] = {"is", "where", "matches", "-webkit-any", "-moz-any", NULL};
-    static const char *const never[] = {"lang", "dir", "state", "host", NULL};
+    static const char *const never[] = {"dir", "state", "host", NULL};
     if (g_str_has_prefix(name, "nth-")) {
         if (!read_nth(name, arguments, simple, depth))
             return false;
         simple->specificity = 0x100 + largest_specificity(simple->list);
         return true;
+    }
+    if (strcmp(name, "lang") == 0) {
+        simple->kind = SIMPLE_LANGUAGE, simple->specificity = 0x100;
+        simple->comparison = '|', simple->ignore_case = true, simple->value = g_strdup(arguments);
+        return !strpbrk(arguments, "\"',"); // no browser takes them
     }
     if (g_strv_contains(never, name)) {
         simple->kind = SIMPLE_NEVER, simple->specificity = 0x100;
@@ -485,6 +491,12 @@ static bool matches_value(const Simple *simple, const char *text)
     }
 }
 
+static bool speaks(const Simple *simple, const xmlNode *node)
+{
+    g_autoptr(xmlChar) language = xmlNodeGetLang(node);
+    return language && matches_value(simple, (const char *)language);
+}
+
 static bool matches_attribute(const Simple *simple, const xmlNode *node)
 {
     g_autoptr(xmlChar) own = fl_attribute(node, simple->name);
@@ -541,6 +553,8 @@ static bool matches_simple(const Simple *simple, const xmlNode *node, FlSelector
         return is_empty(node);
     case SIMPLE_LINK:
         return is_link(node);
+    case SIMPLE_LANGUAGE:
+        return speaks(simple, node);
     case SIMPLE_ANY:
         return matches_any(simple->list, node, work);
     case SIMPLE_NOT:

@@ -414,7 +414,7 @@ static char *path_shape(const char *arguments, FlCssBox box, bool *evenodd)
     g_autoptr(xmlDoc) doc = xmlNewDoc((const xmlChar *)"1.0");
     xmlNode *path = xmlNewDocNode(doc, NULL, (const xmlChar *)"path", NULL);
     xmlDocSetRootElement(doc, path);
-    xmlSetNs(path, xmlNewNs(path, (const xmlChar *)"http://www.w3.org/2000/svg", NULL));
+    xmlSetNs(path, xmlNewNs(path, (const xmlChar *)FL_SVG_NAMESPACE, NULL));
     fl_set_attribute(path, "d", d);
     const FlAffine move = {1, 0, 0, 1, box.x, box.y};
     const FlCssUnits units = {0};

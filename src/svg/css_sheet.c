@@ -44,6 +44,7 @@ typedef struct Reader {
     FlCssPage page;
     GPtrArray *files;
     FlWarnings *warnings;
+    GHashTable *prefixes; // that @namespace gives to SVG
 } Reader;
 
 static void read_rules(Reader *reader, const char *css, const Place *place);
@@ -130,12 +131,13 @@ static bool cut_important(char *value)
     return true;
 }
 
-/** Adds "name: value"; text without a colon is dropped, as in a browser. */
+/** Adds "name: value"; text without a colon, or with a bracket that is not open, is dropped, as in
+ * a browser. */
 static void add_declaration(GArray *list, const char *text, size_t n)
 {
     g_autofree char *copy = g_strndup(text, n);
     char *colon = strchr(copy, ':');
-    if (!colon)
+    if (!colon || *fl_css_find(copy, ""))
         return;
     *colon = '\0';
     char *name = g_strstrip(copy), *value = g_strstrip(colon + 1);
@@ -155,7 +157,7 @@ GArray *fl_css_declarations(const char *text)
     GArray *list = declarations_new();
     g_autofree char *bare = fl_css_without_comments(text);
     for (const char *s = fl_css_space(bare); *s; s = fl_css_space(s)) {
-        const char *end = fl_css_find(s, ";");
+        const char *end = fl_css_find_past(s, ";");
         add_declaration(list, s, (size_t)(end - s));
         s = *end ? end + 1 : end;
     }
@@ -169,12 +171,26 @@ static void rule_clear(void *data)
     g_array_unref(((FlCssRule *)data)->declarations);
 }
 
+/** True if the prefixes of names in selectors, such as "svg|rect", mean SVG. */
+static bool knows_prefixes(const Reader *reader, const char *selectors)
+{
+    bool known = true;
+    for (const char *bar = selectors; known && *(bar = fl_css_find_past(bar, "|")); bar++) {
+        const char *start = bar;
+        while (start > selectors && (g_ascii_isalnum(start[-1]) || strchr("-_", start[-1])))
+            start--;
+        g_autofree char *prefix = g_strndup(start, (gsize)(bar - start));
+        known = !*prefix || g_hash_table_contains(reader->prefixes, prefix);
+    }
+    return known;
+}
+
 /** Adds a rule for each selector of a list. */
 static void add_rules(Reader *reader, const char *selectors, GArray *declarations,
                       const Layer *layer)
 {
     FlCssSheet *sheet = reader->sheet;
-    GPtrArray *list = fl_selectors_parse(selectors);
+    GPtrArray *list = knows_prefixes(reader, selectors) ? fl_selectors_parse(selectors) : NULL;
     if (!list) {
         warn(reader, "rule", selectors, "has a selector that is not known and is left out");
         return;
@@ -380,11 +396,18 @@ static void read_layer(Reader *reader, const char *prelude, const char *block, c
 static void read_at_rule(Reader *reader, const char *name, const char *prelude, const char *block,
                          const Place *place)
 {
-    static const char *const ignored[] = {
-        "charset",         "namespace",      "page",
-        "view-transition", "starting-style", "font-feature-values",
-        "counter-style",   "position-try",   NULL};
-    if (strcmp(name, "import") == 0)
+    static const char *const ignored[] = {"charset",
+                                          "page",
+                                          "view-transition",
+                                          "starting-style",
+                                          "font-feature-values",
+                                          "counter-style",
+                                          "position-try",
+                                          NULL};
+    if (strcmp(name, "namespace") == 0) {
+        if (strstr(prelude, FL_SVG_NAMESPACE)) // of others there are no shapes
+            g_hash_table_add(reader->prefixes, g_strndup(prelude, fl_css_identifier(prelude)));
+    } else if (strcmp(name, "import") == 0)
         read_import(reader, prelude, place);
     else if (strcmp(name, "layer") == 0)
         read_layer(reader, prelude, block, place);
@@ -519,7 +542,8 @@ FlCssSheet *fl_css_sheet_take(xmlDoc *doc, const char *path, int number, FlCssPa
     sheet->initial = declarations_new();
     sheet->own = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     sheet->layers = g_ptr_array_new_with_free_func(layer_free);
-    Reader reader = {sheet, path, number, page, files, warnings};
+    g_autoptr(GHashTable) prefixes = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    Reader reader = {sheet, path, number, page, files, warnings, prefixes};
     const Place place = {path, NULL, layer_new(sheet, NULL, ""), 0};
     take_instructions(&reader, doc, &place);
     take_elements(&reader, xmlDocGetRootElement(doc), &place);

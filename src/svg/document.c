@@ -8,12 +8,10 @@
 #include <string.h>
 #include <zlib.h>
 
-static const char svg_namespace[] = "http://www.w3.org/2000/svg";
-
 bool fl_is(const xmlNode *node, const char *name)
 {
     return node->type == XML_ELEMENT_NODE && strcmp((const char *)node->name, name) == 0 &&
-           node->ns && strcmp((const char *)node->ns->href, svg_namespace) == 0;
+           node->ns && strcmp((const char *)node->ns->href, FL_SVG_NAMESPACE) == 0;
 }
 
 bool fl_is_one_of(const xmlNode *node, const char *const *names)
@@ -270,7 +268,7 @@ static const char *known_namespace(const char *prefix)
 {
     static const char *const known[][2] = {
         {"xlink", "http://www.w3.org/1999/xlink"},
-        {"svg", svg_namespace},
+        {"svg", FL_SVG_NAMESPACE},
         {"inkscape", "http://www.inkscape.org/namespaces/inkscape"},
         {"sodipodi", "http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd"},
     };
@@ -418,13 +416,13 @@ xmlDoc *fl_document_parse(const char *text, size_t bytes, const char *path, int 
     if (root)
         expand_namespaces(doc, root->nsDef);
     if (root && !root->ns && xmlStrEqual(root->name, (const xmlChar *)"svg")) {
-        set_namespace(root, xmlNewNs(root, (const xmlChar *)svg_namespace, NULL));
+        set_namespace(root, xmlNewNs(root, (const xmlChar *)FL_SVG_NAMESPACE, NULL));
         fl_warnings_add(warnings, path, number, NULL, "no xmlns on <svg>; read as SVG");
     }
     if (!root || !fl_is(root, "svg")) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
                     "%s: the root is <%s>, expected <svg xmlns=\"%s\">", path,
-                    root ? (const char *)root->name : "", svg_namespace);
+                    root ? (const char *)root->name : "", FL_SVG_NAMESPACE);
         return NULL;
     }
     g_autoptr(GHashTable) entities = g_hash_table_new_full(NULL, NULL, NULL, g_free);

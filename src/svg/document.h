@@ -7,6 +7,8 @@
 #include <libxml/tree.h>
 #include <stdbool.h>
 
+#define FL_SVG_NAMESPACE "http://www.w3.org/2000/svg"
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlDoc, xmlFreeDoc)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlChar, xmlFree)
 

@@ -4,6 +4,7 @@
 #include "svg/css_scan.h"
 #include "svg/effects.h"
 #include "svg/normalise.h"
+#include "svg/path_data.h"
 #include <math.h>
 #include <string.h>
 
@@ -173,6 +174,66 @@ static void mend_clip(xmlNode *node, GHashTable *ids)
     }
 }
 
+/* ---- paths ---- */
+
+static void note_line(void *data, char command, const double *v)
+{
+    (void)v;
+    bool *draws = data;
+    *draws = *draws || g_ascii_toupper(command) != 'M';
+}
+
+/** librsvg puts caps at a path that only moves, as charts write for a curve of one point. */
+static void mend_caps(xmlNode *path)
+{
+    g_autoptr(xmlChar) d = fl_attribute(path, "d");
+    bool draws = !d;
+    if (d)
+        fl_path_data_walk((const char *)d, note_line, &draws);
+    if (!draws)
+        fl_declare(path, "stroke-linecap:butt");
+}
+
+/* ---- text ------------------------------------------------------------------------------------ */
+
+/** The height of a baseline above that of the letters, percent of the size of a font such as DejaVu
+ * Sans or Liberation Sans. */
+static int height_of(const char *word)
+{
+    static const struct {
+        const char *word;
+        int percent;
+    } known[] = {{"central", 35},          {"middle", 27},       {"hanging", 73},
+                 {"mathematical", 46},     {"text-top", 92},     {"text-before-edge", 92},
+                 {"text-after-edge", -22}, {"text-bottom", -22}, {"ideographic", -22}};
+    for (size_t i = 0; i < G_N_ELEMENTS(known); i++)
+        if (strcmp(word, known[i].word) == 0)
+            return known[i].percent;
+    return 0;
+}
+
+static int baseline_of(const xmlNode *node)
+{
+    for (; node && node->type == XML_ELEMENT_NODE; node = node->parent) {
+        g_autofree char *word = fl_property(node, "dominant-baseline");
+        if (word && strcmp(word, "inherit") != 0)
+            return height_of(word);
+    }
+    return 0;
+}
+
+/** librsvg lacks the baselines by which charts put labels at the height of a mark. */
+static void mend_baseline(xmlNode *text)
+{
+    g_autofree char *own = fl_property(text, "baseline-shift");
+    g_autofree char *word = fl_property(text, "alignment-baseline");
+    const int around = fl_is(text, "tspan") ? baseline_of(text->parent) : 0;
+    const int height = (word ? height_of(word) : baseline_of(text)) - around;
+    g_autofree char *shift = g_strdup_printf("baseline-shift:%d%%", -height);
+    if (height != 0 && !own)
+        fl_declare(text, shift);
+}
+
 /* ---- symbols --------------------------------------------------------------------------------- */
 
 /** librsvg cuts a <symbol> off at its viewBox, a browser at the place where <use> shows it: it is
@@ -230,6 +291,10 @@ static void mend(xmlNode *node, GHashTable *ids, int *n_shadows, int *n_copied)
         mend_gradient(node);
     else if (fl_is_one_of(node, with_points))
         mend_points(node);
+    else if (fl_is(node, "text") || fl_is(node, "tspan"))
+        mend_baseline(node);
+    else if (fl_is(node, "path"))
+        mend_caps(node);
     else if (fl_is(node, "use"))
         mend_use(node, ids, n_copied);
     for (xmlNode *child = node->children, *next; child; child = next) {

@@ -162,16 +162,21 @@ static bool is_zero(const xmlChar *length)
     return length && g_ascii_strtod((const char *)length, NULL) == 0;
 }
 
+/** The size that <use> gives, if any, or that of the symbol itself. */
+static void give_size(xmlNode *shown, const char *name, const xmlChar *size, bool symbol)
+{
+    if (size || (symbol && !xmlHasProp(shown, (const xmlChar *)name)))
+        fl_set_attribute(shown, name, size ? (const char *)size : "100%");
+}
+
 static void show_copy(xmlNode *use, xmlNode *shown, const xmlChar *width, const xmlChar *height)
 {
     const bool symbol = fl_is(shown, "symbol");
     if (symbol)
         xmlNodeSetName(shown, (const xmlChar *)"svg");
     if (symbol || fl_is(shown, "svg")) {
-        if (width || symbol)
-            fl_set_attribute(shown, "width", width ? (const char *)width : "100%");
-        if (height || symbol)
-            fl_set_attribute(shown, "height", height ? (const char *)height : "100%");
+        give_size(shown, "width", width, symbol);
+        give_size(shown, "height", height, symbol);
     }
     xmlAddChild(use, shown);
 }

@@ -29,7 +29,7 @@ static const char *number(const char *s)
         after = strspn(s + 1, "0123456789");
         s += 1 + after;
     }
-    if (before + after == 0)
+    if (after == 0 && (before == 0 || s[-1] == '.'))
         return NULL;
     if ((*s == 'e' || *s == 'E') && s[1]) {
         const char *e = s + 1 + (s[1] == '+' || s[1] == '-');
