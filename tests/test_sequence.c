@@ -21,7 +21,7 @@ static char *numbers(const char *folder, const char *input, const char *range, F
         return g_strdup(error->message);
     GString *text = g_string_new(NULL);
     for (int i = 0; i < s->n; i++)
-        g_string_append_printf(text, "%s%d", i ? " " : "", s->number[i]);
+        g_string_append_printf(text, "%s%d", i ? " " : "", s->frame[i].number);
     return g_string_free(text, FALSE);
 }
 
@@ -88,8 +88,8 @@ static void gaps_are_listed_held_or_skipped(void)
     const char *const inputs[] = {path};
     g_autoptr(FlSequence) s =
         fl_sequence_open(inputs, 1, &(FlSequenceOptions){.missing = FL_MISSING_HOLD}, NULL, NULL);
-    g_assert_cmpstr(s->file[3], ==, s->file[1]);
-    g_assert_cmpstr(s->file[4], !=, s->file[1]);
+    g_assert_cmpstr(s->frame[3].file, ==, s->frame[1].file);
+    g_assert_cmpstr(s->frame[4].file, !=, s->frame[1].file);
 }
 
 static void ranges_choose_frames(void)

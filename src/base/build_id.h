@@ -3,8 +3,8 @@
 #define FLUIDY_BASE_BUILD_ID_H
 
 /**
- * The version and, where the linker has stored it, the build id: programs with equal ids were made
- * from the same code. Static; the first call must not run beside another.
+ * The version and a digest of the library's file: programs with equal ids have the same code.
+ * Static; the first call must not run beside another.
  */
 const char *fl_build_id(void);
 

@@ -5,6 +5,8 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -66,8 +68,8 @@ static bool read_all(int fd, const char *path, size_t most, const FlFileWait *wa
     return true;
 }
 
-bool fl_file_read_pipe(const char *path, size_t most, const FlFileWait *wait, char **data,
-                       size_t *bytes, GError **error)
+bool fl_file_read(const char *path, size_t most, const FlFileWait *wait, char **data, size_t *bytes,
+                  GError **error)
 {
     struct stat info;
     const int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
@@ -86,9 +88,37 @@ bool fl_file_read_pipe(const char *path, size_t most, const FlFileWait *wait, ch
     return true;
 }
 
-bool fl_file_read(const char *path, size_t most, char **data, size_t *bytes, GError **error)
+static int by_name(const void *a, const void *b)
 {
-    return fl_file_read_pipe(path, most, NULL, data, bytes, error);
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+GPtrArray *fl_folder_names(const char *folder, GError **error)
+{
+    g_autoptr(GError) reason = NULL;
+    g_autoptr(GDir) dir = g_dir_open(folder, 0, &reason);
+    if (!dir) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", reason->message);
+        return NULL;
+    }
+    GPtrArray *names = g_ptr_array_new_with_free_func(g_free);
+    for (const char *name; (name = g_dir_read_name(dir));)
+        g_ptr_array_add(names, g_strdup(name));
+    g_ptr_array_sort(names, by_name);
+    return names;
+}
+
+int fl_open_regular(const char *path, int flags, size_t *bytes)
+{
+    struct stat info;
+    const int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC | flags);
+    if (fd >= 0 && fstat(fd, &info) == 0 && S_ISREG(info.st_mode) && info.st_size >= 0) {
+        *bytes = (size_t)info.st_size;
+        return fd;
+    }
+    if (fd >= 0)
+        close(fd);
+    return -1;
 }
 
 bool fl_write_all(int fd, const void *data, size_t bytes)

@@ -15,14 +15,6 @@
  */
 bool fl_file_check(const char *path, FlError code, GError **error);
 
-/**
- * Reads a whole file of at most `most` bytes, whatever size it says it has.
- *
- * *data ends with a NUL after *bytes bytes, which are 1 more than `most` if there is more; free it
- * with g_free(). Returns: false with FL_ERROR_INPUT.
- */
-bool fl_file_read(const char *path, size_t most, char **data, size_t *bytes, GError **error);
-
 /** Controls the wait for the data of a pipe; `stopped` may be NULL. */
 typedef struct FlFileWait {
     bool (*stopped)(void *data); // asked every tenth of a second
@@ -30,14 +22,22 @@ typedef struct FlFileWait {
 } FlFileWait;
 
 /**
- * As fl_file_read(), but a pipe or a device will do, such as the shell's <(…): waits for its end.
+ * Reads a whole file of at most `most` bytes, whatever size it says it has. With `wait`, a pipe or
+ * a device will do, such as the shell's <(…): waits for its end.
  *
- * A `wait` of NULL makes it fl_file_read(). Returns: false with FL_ERROR_INPUT,
- * FL_ERROR_INTERRUPTED if wait->stopped() returns true, FL_ERROR_LIMIT if no data comes within the
- * seconds that a drawing may take.
+ * *data ends with a NUL after *bytes bytes, which are 1 more than `most` if there is more; free it
+ * with g_free(). Returns: false with FL_ERROR_INPUT, FL_ERROR_INTERRUPTED if wait->stopped()
+ * returns true, FL_ERROR_LIMIT if no data comes within the seconds that a drawing may take.
  */
-bool fl_file_read_pipe(const char *path, size_t most, const FlFileWait *wait, char **data,
-                       size_t *bytes, GError **error);
+bool fl_file_read(const char *path, size_t most, const FlFileWait *wait, char **data, size_t *bytes,
+                  GError **error);
+
+/** The names in a folder, sorted; NULL with FL_ERROR_INPUT. To be unref'd. */
+GPtrArray *fl_folder_names(const char *folder, GError **error);
+
+/** Opens a regular file to read it, with more flags of open(). Returns: a descriptor; -1 for one
+ * that is missing, a pipe or a device, which could make the program wait. */
+int fl_open_regular(const char *path, int flags, size_t *bytes);
 
 /** Writes all of the bytes; a signal does not interrupt the writing. Returns: false with errno. */
 bool fl_write_all(int fd, const void *data, size_t bytes);

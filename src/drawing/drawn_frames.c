@@ -9,21 +9,13 @@
 FlRequest fl_drawing_request(const FlDrawing *drawing, int frame, FlVerb verb)
 {
     const FlDrawingFrame *f = &drawing->frame[frame];
-    const FlSequence *sequence = drawing->sequence;
-    return (FlRequest){.verb = verb,
-                       .file = sequence->file[frame],
-                       .number = sequence->number[frame],
-                       .frame = f->origin,
-                       .svg = {.canvas = f->canvas,
-                               .dpi = drawing->dpi,
-                               .whole = (const char *const *)f->whole,
-                               .from = sequence->from,
-                               .layer = sequence->layer[frame],
-                               .seconds = sequence->seconds[frame]},
-                       .page = f->page,
-                       .width = drawing->width,
-                       .height = drawing->height,
-                       .n_regions = (int)drawing->regions->len};
+    const FlSvgOptions svg = {
+        .canvas = f->canvas, .dpi = drawing->dpi, .whole = (const char *const *)f->whole};
+    FlRequest request = fl_sequence_request(drawing->sequence, frame, verb, svg);
+    request.frame = f->origin, request.page = f->page;
+    request.width = drawing->width, request.height = drawing->height;
+    request.n_regions = (int)drawing->regions->len;
+    return request;
 }
 
 void fl_drawing_forget(FlDrawing *drawing)
@@ -71,7 +63,7 @@ static FlDrawList *unpack(const FlDrawing *drawing, int frame, const void *data,
     g_autoptr(GError) problem = NULL;
     FlDrawList *draws = fl_draws_unpack(data, bytes, &bounds, &problem);
     if (g_error_matches(problem, FL_ERROR, FL_ERROR_INPUT))
-        fl_answer_set_damaged(drawing->sequence->file[frame], error);
+        fl_answer_set_damaged(drawing->sequence->frame[frame].file, error);
     else if (problem)
         g_propagate_error(error, g_steal_pointer(&problem));
     return draws;

@@ -15,24 +15,21 @@ void fl_sequence_leave_out(FlSequence *s, FlMissing missing, GError *const *fail
                            FlWarnings *warnings)
 {
     const int n = s->n;
-    g_auto(GStrv) file = g_steal_pointer(&s->file);
-    s->file = g_new0(char *, n + 1);
+    g_autofree FlSequenceFrame *frame = g_memdup2(s->frame, (size_t)n * sizeof *frame);
     s->n = 0;
     for (int t = 0; t < n; t++) {
         if (failed[t]) {
-            fl_warnings_add(warnings, file[t], s->number[t], NULL, "left out (‘missing’): %s",
-                            failed[t]->message);
+            fl_warnings_add(warnings, frame[t].file, frame[t].number, NULL,
+                            "left out (‘missing’): %s", failed[t]->message);
             s->n_left_out++;
         }
         const int from = missing == FL_MISSING_HOLD ? fl_sequence_instead(failed, n, t) : t;
         if (failed[from])
             continue;
-        s->file[s->n] = g_strdup(file[from]);
-        s->number[s->n] = s->number[t];
-        s->stand_in[s->n] = s->stand_in[t] || from != t;
-        s->layer[s->n] = s->layer[from];
-        s->seconds[s->n] = s->seconds[from];
-        s->n++;
+        FlSequenceFrame *kept = &s->frame[s->n++];
+        *kept = frame[from];
+        kept->number = frame[t].number;
+        kept->stand_in = frame[t].stand_in || from != t;
     }
 }
 

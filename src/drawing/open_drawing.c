@@ -122,7 +122,7 @@ static bool tell_reading(void *data, const FlSequence *sequence, int done)
     const FlCaller *caller = data;
     const FlProgress progress = {.stage = "read",
                                  .region_index = -1,
-                                 .frame = sequence->number[done - 1],
+                                 .frame = sequence->frame[done - 1].number,
                                  .done = done,
                                  .total = sequence->n,
                                  .elapsed_s = fl_seconds_since(caller->start),

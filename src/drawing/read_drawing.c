@@ -108,12 +108,12 @@ const char *fl_drawing_name(const FlDrawing *drawing)
 
 const char *fl_drawing_file(const FlDrawing *drawing, int frame)
 {
-    return drawing->sequence->file[frame];
+    return drawing->sequence->frame[frame].file;
 }
 
 int fl_drawing_number(const FlDrawing *drawing, int frame)
 {
-    return drawing->sequence->number[frame];
+    return drawing->sequence->frame[frame].number;
 }
 
 const char *const *fl_drawing_found_files(const FlDrawing *drawing)
@@ -131,7 +131,7 @@ int fl_drawing_earlier(const FlDrawing *drawing)
 int fl_drawing_shown(const FlDrawing *drawing, int frame)
 {
     const FlSequence *s = drawing->sequence;
-    while (frame > 0 && (s->stand_in[frame] || s->stand_in[frame - 1]) &&
+    while (frame > 0 && (s->frame[frame].stand_in || s->frame[frame - 1].stand_in) &&
            fl_sequence_same(s, frame, frame - 1))
         frame--;
     return frame;
@@ -433,7 +433,7 @@ static FlDrawing *make_film(const FlDrawingOptions *options, FlSequence *sequenc
     if (groups->len > INT16_MAX) {
         g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
                     "%s: %u regions, more than the limit of %d; use another ‘key’",
-                    sequence->file[0], groups->len, INT16_MAX);
+                    sequence->frame[0].file, groups->len, INT16_MAX);
         return NULL;
     }
     FlDrawing *drawing = g_new0(FlDrawing, 1);
@@ -503,7 +503,7 @@ FlDrawing *fl_drawing_open(const FlDrawingOptions *options, FlWarnings *warnings
         drawing->workers = g_steal_pointer(&workers);
         const char *lack = options->apart ? fl_workers_lack(drawing->workers) : NULL;
         if (lack)
-            fl_warnings_add(warnings, sequence->file[0], -1, NULL,
+            fl_warnings_add(warnings, sequence->frame[0].file, -1, NULL,
                             "is read without a whole sandbox: %s", lack);
         g_steal_pointer(&sequence);
     }

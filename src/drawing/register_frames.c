@@ -139,8 +139,8 @@ static double *places_of(FlSurvey *survey, FlCanvas *page, FlWarnings *warnings,
     g_autoptr(GArray) known = g_array_new(FALSE, FALSE, sizeof(Known));
     bool any = false, good = true;
     for (int t = 0; t < survey->n_frames; t++) {
-        const char *file = survey->sequence->file[t];
-        const int number = survey->sequence->number[t];
+        const char *file = survey->sequence->frame[t].file;
+        const int number = survey->sequence->frame[t].number;
         FlPageMeasures measures;
         if (!fl_survey_measure(survey, t, &(FlCanvas){0, 0, PAGE_PX, PAGE_PX}, true, &measures,
                                good ? error : NULL)) {

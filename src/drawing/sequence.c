@@ -1,26 +1,21 @@
 #include "drawing/sequence.h"
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/suggest.h"
 #include "io/pattern.h"
 #include "worker/workers.h"
 #include <fnmatch.h>
 #include <string.h>
 
-typedef struct Found {
-    int number;
-    char *path;
-    int layer; // as in FlSequence
-} Found;
-
 static void found_clear(void *data)
 {
-    g_free(((Found *)data)->path);
+    g_free(((FlSequenceFrame *)data)->file);
 }
 
 static GArray *found_new(void)
 {
-    GArray *found = g_array_new(FALSE, FALSE, sizeof(Found));
+    GArray *found = g_array_new(FALSE, FALSE, sizeof(FlSequenceFrame));
     g_array_set_clear_func(found, found_clear);
     return found;
 }
@@ -28,7 +23,8 @@ static GArray *found_new(void)
 static void found_add(GArray *found, int number, const char *folder, const char *name)
 {
     const bool here = strcmp(folder, ".") == 0;
-    const Found f = {number, here ? g_strdup(name) : g_build_filename(folder, name, NULL), 0};
+    const FlSequenceFrame f = {here ? g_strdup(name) : g_build_filename(folder, name, NULL),
+                               number};
     g_array_append_val(found, f);
 }
 
@@ -36,27 +32,6 @@ static bool is_svg(const char *name)
 {
     g_autofree char *lower = g_ascii_strdown(name, -1);
     return name[0] != '.' && (g_str_has_suffix(lower, ".svg") || g_str_has_suffix(lower, ".svgz"));
-}
-
-static int compare_names(const void *a, const void *b)
-{
-    return strcmp(*(const char *const *)a, *(const char *const *)b);
-}
-
-/** The names in a folder, sorted; NULL with FL_ERROR_INPUT. */
-static GPtrArray *list_folder(const char *folder, GError **error)
-{
-    g_autoptr(GError) reason = NULL;
-    g_autoptr(GDir) dir = g_dir_open(folder, 0, &reason);
-    if (!dir) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", reason->message);
-        return NULL;
-    }
-    GPtrArray *names = g_ptr_array_new_with_free_func(g_free);
-    for (const char *name; (name = g_dir_read_name(dir));)
-        g_ptr_array_add(names, g_strdup(name));
-    g_ptr_array_sort(names, compare_names);
-    return names;
 }
 
 /** A sequence among the names of a folder: those that differ in their number only. */
@@ -137,7 +112,7 @@ static bool fits(const char *name, const FlPattern *pattern, const char *wildcar
 static bool add_fitting(GArray *found, const char *input, const FlPattern *pattern, GError **error)
 {
     g_autofree char *folder = g_path_get_dirname(input), *base = g_path_get_basename(input);
-    g_autoptr(GPtrArray) names = list_folder(folder, error);
+    g_autoptr(GPtrArray) names = fl_folder_names(folder, error);
     if (!names)
         return false;
     for (guint i = 0; i < names->len; i++) {
@@ -168,7 +143,7 @@ static char *group_list(const GArray *groups)
 
 static bool add_folder(GArray *found, const char *folder, FlWarnings *warnings, GError **error)
 {
-    g_autoptr(GPtrArray) names = list_folder(folder, error);
+    g_autoptr(GPtrArray) names = fl_folder_names(folder, error);
     if (!names)
         return false;
     g_autoptr(GArray) groups = group_names(names);
@@ -204,8 +179,8 @@ static void number_files(GArray *found)
     g_auto(FlPattern) first = {0};
     bool numbered = true;
     for (guint i = 0; i < found->len; i++) {
-        Found *f = &g_array_index(found, Found, i);
-        g_autofree char *base = g_path_get_basename(f->path);
+        FlSequenceFrame *f = &g_array_index(found, FlSequenceFrame, i);
+        g_autofree char *base = g_path_get_basename(f->file);
         g_auto(FlPattern) p = {0};
         numbered = numbered && fl_pattern_of_name(base, &p, &f->number);
         if (!numbered)
@@ -218,21 +193,21 @@ static void number_files(GArray *found)
         }
     }
     for (guint i = 0; !numbered && i < found->len; i++)
-        g_array_index(found, Found, i).number = (int)i + 1;
+        g_array_index(found, FlSequenceFrame, i).number = (int)i + 1;
 }
 
 static bool add_file(GArray *found, const char *input, GError **error)
 {
     if (!g_file_test(input, G_FILE_TEST_EXISTS)) {
         g_autofree char *folder = g_path_get_dirname(input), *base = g_path_get_basename(input);
-        g_autoptr(GPtrArray) names = list_folder(folder, error);
+        g_autoptr(GPtrArray) names = fl_folder_names(folder, error);
         if (!names)
             return false;
         g_autofree char *hint = suggestion(names, base);
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no such file%s", input, hint);
         return false;
     }
-    const Found f = {0, g_strdup(input), 0};
+    const FlSequenceFrame f = {g_strdup(input)};
     g_array_append_val(found, f);
     return true;
 }
@@ -352,7 +327,7 @@ static bool split(GArray *found, const FlSequenceOptions *options, FlInnerFrames
                     words[options->from], found->len);
         return false;
     }
-    g_autofree char *path = g_strdup(g_array_index(found, Found, 0).path);
+    g_autofree char *path = g_strdup(g_array_index(found, FlSequenceFrame, 0).file);
     if (!ask_for_frames(path, options, frames, error))
         return false;
     if (frames->from == FL_FRAMES_FILES)
@@ -360,7 +335,7 @@ static bool split(GArray *found, const FlSequenceOptions *options, FlInnerFrames
     warn_of_length(path, frames, warnings);
     g_array_set_size(found, 0);
     for (int layer = 1; layer <= frames->n; layer++) {
-        const Found f = {layer, g_strdup(path), layer};
+        const FlSequenceFrame f = {.file = g_strdup(path), .number = layer, .layer = layer};
         g_array_append_val(found, f);
     }
     return true;
@@ -368,17 +343,17 @@ static bool split(GArray *found, const FlSequenceOptions *options, FlInnerFrames
 
 static int compare_found(const void *a, const void *b)
 {
-    const int x = ((const Found *)a)->number, y = ((const Found *)b)->number;
+    const int x = ((const FlSequenceFrame *)a)->number, y = ((const FlSequenceFrame *)b)->number;
     return (x > y) - (x < y);
 }
 
 static bool no_number_twice(const GArray *found, GError **error)
 {
     for (guint i = 1; i < found->len; i++) {
-        const Found *a = &g_array_index(found, Found, i - 1), *b = a + 1;
+        const FlSequenceFrame *a = &g_array_index(found, FlSequenceFrame, i - 1), *b = a + 1;
         if (a->number == b->number) {
-            g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s and %s are both frame %d", a->path,
-                        b->path, a->number);
+            g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s and %s are both frame %d", a->file,
+                        b->file, a->number);
             return false;
         }
     }
@@ -387,11 +362,11 @@ static bool no_number_twice(const GArray *found, GError **error)
 
 /** The file of a number; with hold, if it is missing, that of the nearest number before, else
  * after. */
-static const Found *look_up(const GArray *found, int number, bool hold)
+static const FlSequenceFrame *look_up(const GArray *found, int number, bool hold)
 {
-    const Found *before = NULL;
+    const FlSequenceFrame *before = NULL;
     for (guint i = 0; i < found->len; i++) {
-        const Found *f = &g_array_index(found, Found, i);
+        const FlSequenceFrame *f = &g_array_index(found, FlSequenceFrame, i);
         if (f->number == number)
             return f;
         if (f->number > number)
@@ -421,9 +396,9 @@ static char *list_numbers(const GArray *numbers)
     return g_string_free(text, FALSE);
 }
 
-static char *shared_name(const Found *first)
+static char *shared_name(const FlSequenceFrame *first)
 {
-    g_autofree char *base = g_path_get_basename(first->path);
+    g_autofree char *base = g_path_get_basename(first->file);
     g_auto(FlPattern) p = {0};
     int number = 0;
     char *name = NULL;
@@ -438,7 +413,7 @@ static char *shared_name(const Found *first)
     if (name[0])
         return name;
     g_free(name);
-    g_autofree char *absolute = g_canonicalize_filename(first->path, NULL);
+    g_autofree char *absolute = g_canonicalize_filename(first->file, NULL);
     g_autofree char *folder = g_path_get_dirname(absolute);
     name = g_path_get_basename(folder);
     if (name[0] == G_DIR_SEPARATOR) {
@@ -449,14 +424,14 @@ static char *shared_name(const Found *first)
 }
 
 /** The found files as a pattern with its folder, for messages. */
-static char *pattern_text(const Found *first)
+static char *pattern_text(const FlSequenceFrame *first)
 {
-    g_autofree char *folder = g_path_get_dirname(first->path);
-    g_autofree char *base = g_path_get_basename(first->path);
+    g_autofree char *folder = g_path_get_dirname(first->file);
+    g_autofree char *base = g_path_get_basename(first->file);
     g_auto(FlPattern) p = {0};
     int number = 0;
     if (!fl_pattern_of_name(base, &p, &number))
-        return g_strdup(first->path);
+        return g_strdup(first->file);
     g_autofree char *text = fl_pattern_text(&p);
     return strcmp(folder, ".") == 0 ? g_steal_pointer(&text) : g_build_filename(folder, text, NULL);
 }
@@ -465,7 +440,7 @@ static GArray *numbers_of(const GArray *found)
 {
     GArray *numbers = g_array_new(FALSE, FALSE, sizeof(int));
     for (guint i = 0; i < found->len; i++)
-        g_array_append_val(numbers, g_array_index(found, Found, i).number);
+        g_array_append_val(numbers, g_array_index(found, FlSequenceFrame, i).number);
     return numbers;
 }
 
@@ -473,7 +448,7 @@ static char **files_of(const GArray *found)
 {
     char **files = g_new0(char *, found->len + 1);
     for (guint i = 0; i < found->len; i++)
-        files[i] = g_strdup(g_array_index(found, Found, i).path);
+        files[i] = g_strdup(g_array_index(found, FlSequenceFrame, i).file);
     return files;
 }
 
@@ -481,27 +456,23 @@ static char **files_of(const GArray *found)
 static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing missing,
                           FlWarnings *warnings, GError **error)
 {
-    const Found *first = &g_array_index(found, Found, 0);
+    const FlSequenceFrame *first = &g_array_index(found, FlSequenceFrame, 0);
     g_autofree char *pattern = pattern_text(first);
     g_autoptr(GArray) gaps = g_array_new(FALSE, FALSE, sizeof(int));
     g_autoptr(FlSequence) s = g_new0(FlSequence, 1);
-    s->file = g_new0(char *, wanted->len + 1);
-    s->number = g_new0(int, wanted->len + 1);
-    s->stand_in = g_new0(bool, wanted->len + 1);
-    s->layer = g_new0(int, wanted->len + 1);
+    s->frame = g_new0(FlSequenceFrame, wanted->len + 1);
     s->name = shared_name(first);
     s->found = files_of(found);
     for (guint i = 0; i < wanted->len; i++) {
         const int number = g_array_index(wanted, int, i);
-        const Found *f = look_up(found, number, missing == FL_MISSING_HOLD);
+        const FlSequenceFrame *f = look_up(found, number, missing == FL_MISSING_HOLD);
         if (!f || f->number != number)
             g_array_append_val(gaps, number);
-        if (f) {
-            s->file[s->n] = g_strdup(f->path);
-            s->stand_in[s->n] = f->number != number;
-            s->layer[s->n] = f->layer;
-            s->number[s->n++] = number;
-        }
+        if (f)
+            s->frame[s->n++] = (FlSequenceFrame){.file = s->found[f - first],
+                                                 .number = number,
+                                                 .stand_in = f->number != number,
+                                                 .layer = f->layer};
     }
     g_autofree char *list = list_numbers(gaps);
     if (s->n == 0) {
@@ -529,9 +500,8 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
 static void set_moments(FlSequence *sequence, const FlInnerFrames *frames, const FlMoments *moments)
 {
     sequence->from = frames->from;
-    sequence->seconds = g_new0(double, sequence->n + 1);
     for (int i = 0; frames->from == FL_FRAMES_TIME && i < sequence->n; i++)
-        sequence->seconds[i] = moments->from + (sequence->layer[i] - 1) / moments->fps;
+        sequence->frame[i].seconds = moments->from + (sequence->frame[i].layer - 1) / moments->fps;
 }
 
 FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs,
@@ -560,37 +530,39 @@ FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs,
     g_array_sort(found, compare_found);
     if (!no_number_twice(found, error))
         return NULL;
-    const int first = g_array_index(found, Found, 0).number;
-    const int last = g_array_index(found, Found, found->len - 1).number;
+    const int first = g_array_index(found, FlSequenceFrame, 0).number;
+    const int last = g_array_index(found, FlSequenceFrame, found->len - 1).number;
     g_autofree char *all = g_strdup_printf("%d-%d", first, last);
     g_autoptr(GArray) wanted =
         fl_range_parse(options->range ? options->range : all, first, last, error);
     FlSequence *sequence = wanted ? choose(found, wanted, options->missing, warnings, error) : NULL;
-    while (sequence &&
-           g_array_index(found, Found, sequence->n_earlier).number < sequence->number[0])
+    while (sequence && g_array_index(found, FlSequenceFrame, sequence->n_earlier).number <
+                           sequence->frame[0].number)
         sequence->n_earlier++;
     if (sequence)
         set_moments(sequence, &frames, &options->moments);
     return sequence;
 }
 
+FlRequest fl_sequence_request(const FlSequence *sequence, int t, FlVerb verb, FlSvgOptions svg)
+{
+    const FlSequenceFrame *frame = &sequence->frame[t];
+    svg.from = sequence->from, svg.layer = frame->layer, svg.seconds = frame->seconds;
+    return (FlRequest){
+        .verb = verb, .file = frame->file, .number = frame->number, .frame = t, .svg = svg};
+}
+
 bool fl_sequence_same(const FlSequence *sequence, int a, int b)
 {
-    return sequence->layer[a] == sequence->layer[b] &&
-           strcmp(sequence->file[a], sequence->file[b]) == 0;
+    return sequence->frame[a].layer == sequence->frame[b].layer &&
+           strcmp(sequence->frame[a].file, sequence->frame[b].file) == 0;
 }
 
 void fl_sequence_free(FlSequence *sequence)
 {
     if (!sequence)
         return;
-    for (int i = 0; i < sequence->n; i++)
-        g_free(sequence->file[i]);
-    g_free(sequence->file);
-    g_free(sequence->number);
-    g_free(sequence->stand_in);
-    g_free(sequence->layer);
-    g_free(sequence->seconds);
+    g_free(sequence->frame);
     g_free(sequence->name);
     g_strfreev(sequence->found);
     g_free(sequence);

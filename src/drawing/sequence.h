@@ -3,21 +3,26 @@
 #define FLUIDY_DRAWING_SEQUENCE_H
 
 #include "base/warnings.h"
-#include "svg/inner_frames.h"
+#include "worker/messages.h"
 #include <fluidy/error.h>
 #include <fluidy/render.h>
 #include <stdbool.h>
 
-/** The files of a drawing, in order. A held frame has the file of another number. */
+/** A frame of a sequence, or a file that was found. */
+typedef struct FlSequenceFrame {
+    char *file;     // of a sequence: one of `found`
+    int number;     // as in the file's name; 1 … n where the names have no number
+    bool stand_in;  // it has the file of another number, which is held
+    int layer;      // the layer, page or moment of its file, from 1; 0: the file is the frame
+    double seconds; // of a moment
+} FlSequenceFrame;
+
+/** The files of a drawing, in order. */
 typedef struct FlSequence {
     int n;
-    char **file;
-    int *number;       // as in the file's name; 1 … n where the names have no number
-    bool *stand_in;    // true: the file of another number, which is held
+    FlSequenceFrame *frame;
     char *name;        // common part of the names, such as "walk" of walk_0001.svg; never empty
     FlFramesFrom from; // LAYERS, PAGES, TIME: what of one file the frames are; else FILES
-    int *layer;        // the layer, page or moment of its file, from 1; 0: the file is the frame
-    double *seconds;   // of TIME: the moment
     int n_left_out;    // frames whose files were found, but are held or skipped
     char **found;  // all files that the inputs name, those of other frames as well; ends in NULL
     int n_earlier; // of these: how many are of frames before the first one
@@ -61,6 +66,9 @@ void fl_sequence_leave_out(FlSequence *sequence, FlMissing missing, GError *cons
 
 /** With hold, the frame whose file frame t gets: itself, if it is good. */
 int fl_sequence_instead(GError *const *failed, int n, int t);
+
+/** Begins a request about a frame, read as `svg` says; it borrows from the sequence. */
+FlRequest fl_sequence_request(const FlSequence *sequence, int t, FlVerb verb, FlSvgOptions svg);
 
 /** Returns: true if two frames, by index, are the same file, or the same layer of one file. */
 bool fl_sequence_same(const FlSequence *sequence, int a, int b);

@@ -41,20 +41,12 @@ static bool tell(void *data)
 
 static FlRequest request_of(const FlSurvey *survey, int t, FlVerb verb)
 {
-    const FlSequence *sequence = survey->sequence;
-    return (FlRequest){.verb = verb,
-                       .file = sequence->file[t],
-                       .number = sequence->number[t],
-                       .frame = t,
-                       .svg = {.canvas = survey->frame[t].canvas,
-                               .dpi = survey->options->dpi,
-                               .whole = (const char *const *)survey->frame[t].whole,
-                               .from = sequence->from,
-                               .layer = sequence->layer[t],
-                               .seconds = sequence->seconds[t]},
-                       .scale = survey->scale,
-                       .width = survey->width,
-                       .height = survey->height};
+    const FlSvgOptions svg = {.canvas = survey->frame[t].canvas,
+                              .dpi = survey->options->dpi,
+                              .whole = (const char *const *)survey->frame[t].whole};
+    FlRequest request = fl_sequence_request(survey->sequence, t, verb, svg);
+    request.scale = survey->scale, request.width = survey->width, request.height = survey->height;
+    return request;
 }
 
 bool fl_survey_measure(FlSurvey *survey, int t, const FlCanvas *canvas, bool shapes,
@@ -127,10 +119,10 @@ static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, GError **error
     if (!(w <= FL_SURVEY_MOST_SIDE && h <= FL_SURVEY_MOST_SIDE)) {
         g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
                     "%s: a picture of %.0f x %.0f px; at most %d px on each side can be drawn",
-                    survey->sequence->file[0], w, h, FL_SURVEY_MOST_SIDE);
+                    survey->sequence->frame[0].file, w, h, FL_SURVEY_MOST_SIDE);
         return false;
     }
-    if (!fl_limit_check(FL_LIMIT_FRAME, w * h / 1e6, survey->sequence->file[0], error))
+    if (!fl_limit_check(FL_LIMIT_FRAME, w * h / 1e6, survey->sequence->frame[0].file, error))
         return false;
     survey->scale = cover_scale(survey->scale, width, height, w, h);
     survey->page.width = width * survey->scale;
@@ -153,14 +145,14 @@ static bool read_frame(FlSurvey *survey, int t, const FlFileWait *wait, FlAnswer
 static bool keep(FlSurvey *survey, int t, FlAnswer *answer, FlWarnings *warnings, GError **error)
 {
     const FlCanvas canvas = survey->frame[t].canvas;
-    const char *file = survey->sequence->file[t];
+    const char *file = survey->sequence->frame[t].file;
     fl_survey_frame_clear(&survey->frame[t]);
     if (!fl_survey_unpack(&answer->reader, &survey->frame[t], &survey->strings, warnings))
         return fl_answer_set_damaged(file, error);
     survey->frame[t].canvas = canvas;
     if (fabs(survey->frame[t].page.width - survey->page.width) > 0.5 ||
         fabs(survey->frame[t].page.height - survey->page.height) > 0.5)
-        fl_warnings_add(warnings, file, survey->sequence->number[t], NULL,
+        fl_warnings_add(warnings, file, survey->sequence->frame[t].number, NULL,
                         "its page is not as large as the first frame's; it keeps its scale; if the "
                         "drawing slides, try ‘register’");
     return true;

@@ -421,7 +421,7 @@ static char *pattern_of(const Subject *subject, const char *what, GError **error
     if (!fl_png_named(pattern, are, error))
         return NULL;
     for (int f = 0; subject->options.overwrite != FL_OVERWRITE_YES && f < sequence->n; f++) {
-        g_autofree char *file = fl_output_name(pattern, sequence->number[f], NULL, error);
+        g_autofree char *file = fl_output_name(pattern, sequence->frame[f].number, NULL, error);
         if (!file || !fl_check_not_exists(file, error))
             return NULL;
     }

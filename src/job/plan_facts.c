@@ -295,10 +295,10 @@ FlDigest fl_request_digest(const FlPlan *plan, const FlSequence *sequence)
     fl_facts_add(facts, "the format", plan->out.format->name);
     add_requested(facts, plan);
     for (int f = 0; f < sequence->n; f++) {
-        fl_facts_add_number(facts, sequence->file[f], sequence->number[f]);
-        fl_facts_add_number(facts, "whether it stands in", sequence->stand_in[f]);
-        fl_facts_add_number(facts, "the layer", sequence->layer[f]);
-        fl_facts_add_number(facts, "the moment", sequence->seconds[f]);
+        fl_facts_add_number(facts, sequence->frame[f].file, sequence->frame[f].number);
+        fl_facts_add_number(facts, "whether it stands in", sequence->frame[f].stand_in);
+        fl_facts_add_number(facts, "the layer", sequence->frame[f].layer);
+        fl_facts_add_number(facts, "the moment", sequence->frame[f].seconds);
     }
     return fl_facts_digest(facts);
 }

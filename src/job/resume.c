@@ -162,7 +162,8 @@ bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GErro
         plan->out.overwrite == FL_OVERWRITE_KEEP || g_file_test(state, G_FILE_TEST_EXISTS))
         return true;
     for (int f = 0; plan->out.n_parts == 1 && f < sequence->n; f++) {
-        g_autofree char *file = fl_output_name(plan->out.output, sequence->number[f], NULL, error);
+        g_autofree char *file =
+            fl_output_name(plan->out.output, sequence->frame[f].number, NULL, error);
         if (!file || !frame_is_free(plan, file, error))
             return false;
     }
@@ -363,8 +364,9 @@ static bool frames_are_there(const FlPlan *plan, const FlSequence *sequence, FlD
 {
     bool there = true;
     for (int f = 0; f < sequence->n && !plan->out.format->film && there; f++) {
-        g_autofree char *file = fl_output_name(plan->out.output, sequence->number[f], NULL, NULL);
-        there = file && fl_mark_is(file, fl_mark_of_frame(made_from, sequence->number[f]));
+        g_autofree char *file =
+            fl_output_name(plan->out.output, sequence->frame[f].number, NULL, NULL);
+        there = file && fl_mark_is(file, fl_mark_of_frame(made_from, sequence->frame[f].number));
     }
     return there;
 }
@@ -381,7 +383,8 @@ static bool keeps_all(const FlPlan *plan, const FlSequence *sequence)
     int first, end;
     fl_outputs_part(&plan->out, sequence->n, &first, &end);
     for (int f = first; f < end; f++) {
-        g_autofree char *file = fl_output_name(plan->out.output, sequence->number[f], NULL, NULL);
+        g_autofree char *file =
+            fl_output_name(plan->out.output, sequence->frame[f].number, NULL, NULL);
         if (!file || !g_file_test(file, G_FILE_TEST_EXISTS))
             return false;
     }
@@ -478,7 +481,7 @@ static bool verify_frames(Verify *verify, GError **error)
     const FlPlan *plan = verify->plan;
     g_autoptr(FlSequence) sequence = fl_sequence_from_options(&plan->options, error);
     for (int f = 0; sequence && f < sequence->n && !plan->out.format->film; f++) {
-        const int number = sequence->number[f];
+        const int number = sequence->frame[f].number;
         g_autofree char *file = fl_output_name(plan->out.output, number, NULL, error);
         if (!file)
             return false;

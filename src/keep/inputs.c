@@ -1,6 +1,7 @@
 #include "keep/inputs.h"
 
 #include "base/error.h"
+#include "base/file.h"
 #include "io/pattern.h"
 #include <fcntl.h>
 #include <stdio.h>
@@ -79,22 +80,6 @@ void fl_inputs_add_quietly(FlInputs *inputs, const char *path)
     (void)list(inputs, path);
 }
 
-static int by_name(const void *a, const void *b)
-{
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
-/* The names in a folder, sorted; empty if it is missing. To be freed. */
-static GPtrArray *names_in(const char *folder)
-{
-    g_autoptr(GDir) dir = g_dir_open(folder, 0, NULL);
-    GPtrArray *names = g_ptr_array_new_with_free_func(g_free);
-    for (const char *name; dir && (name = g_dir_read_name(dir));)
-        g_ptr_array_add(names, g_strdup(name));
-    g_ptr_array_sort(names, by_name);
-    return names;
-}
-
 /* The folders of a style, each before its files; to be freed. */
 static GPtrArray *files_of_style(const char *style)
 {
@@ -102,9 +87,9 @@ static GPtrArray *files_of_style(const char *style)
     GPtrArray *files = g_ptr_array_new_with_free_func(g_free);
     for (size_t k = 0; k < G_N_ELEMENTS(parts); k++) {
         char *folder = g_build_filename(style, parts[k], NULL);
-        g_autoptr(GPtrArray) names = names_in(folder);
+        g_autoptr(GPtrArray) names = fl_folder_names(folder, NULL);
         g_ptr_array_add(files, folder);
-        for (guint i = 0; i < names->len; i++)
+        for (guint i = 0; names && i < names->len; i++)
             g_ptr_array_add(files, g_build_filename(folder, names->pdata[i], NULL));
     }
     return files;
@@ -143,24 +128,12 @@ void fl_inputs_add_frames(FlInputs *inputs, const FlDrawing *drawing, const char
 
 /* ---- digests --------------------------------------------------------------------------------- */
 
-/* Opens a regular file; NULL: it is missing, a pipe or a device. */
-static FILE *open_regular(const char *path)
-{
-    struct stat info;
-    const int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-    if (fd >= 0 && fstat(fd, &info) == 0 && S_ISREG(info.st_mode))
-        return fdopen(fd, "rb");
-    if (fd >= 0)
-        close(fd);
-    return NULL;
-}
-
 static FlDigest folder_digest(const char *path)
 {
     FlDigest digest = {0};
-    g_autoptr(GPtrArray) names = names_in(path);
+    g_autoptr(GPtrArray) names = fl_folder_names(path, NULL);
     fl_digest_add_text(&digest, "folder");
-    for (guint k = 0; k < names->len; k++)
+    for (guint k = 0; names && k < names->len; k++)
         fl_digest_add_text(&digest, names->pdata[k]);
     return digest;
 }
@@ -170,7 +143,9 @@ FlDigest fl_file_digest(const char *path)
     FlDigest digest = {0};
     if (g_file_test(path, G_FILE_TEST_IS_DIR))
         return folder_digest(path);
-    FILE *file = open_regular(path);
+    size_t bytes = 0;
+    const int fd = fl_open_regular(path, 0, &bytes);
+    FILE *file = fd >= 0 ? fdopen(fd, "rb") : NULL;
     g_autofree uint8_t *block = g_malloc(BLOCK_BYTES);
     size_t n = file ? BLOCK_BYTES : 0;
     while (n == BLOCK_BYTES) {

@@ -29,7 +29,7 @@ bool fl_sealed_read_key(GError **error)
     g_autoptr(GError) problem = NULL;
     if (key || !path)
         return true;
-    const bool read = fl_file_read(path, LONGEST_KEY, &data, &bytes, &problem);
+    const bool read = fl_file_read(path, LONGEST_KEY, NULL, &data, &bytes, &problem);
     if (read && bytes > 0 && bytes <= LONGEST_KEY) {
         key = g_bytes_new_take(data, bytes);
         return true;
@@ -65,20 +65,6 @@ bool fl_sealed_write(int fd, const FlSpan *parts, int n)
     for (int k = 0; k < n && written; k++)
         written = fl_write_all(fd, parts[k].data, parts[k].bytes);
     return written;
-}
-
-/* A file without a link, so that a pipe or a device cannot make the program wait. */
-static int open_regular(const char *path, size_t *bytes)
-{
-    struct stat info;
-    const int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_NOCTTY | O_CLOEXEC);
-    if (fd >= 0 && fstat(fd, &info) == 0 && S_ISREG(info.st_mode) && info.st_size >= 0) {
-        *bytes = (size_t)info.st_size;
-        return fd;
-    }
-    if (fd >= 0)
-        close(fd);
-    return -1;
 }
 
 /* Constant time, so that a digest cannot be guessed byte by byte. */
@@ -121,7 +107,7 @@ GBytes *fl_sealed_read(const char *path, bool *damaged)
     bool unused = false;
     bool *bad = damaged ? damaged : &unused;
     *bad = false;
-    const int fd = open_regular(path, &bytes);
+    const int fd = fl_open_regular(path, O_NOFOLLOW, &bytes);
     if (fd < 0)
         return NULL;
     uint8_t *data = fl_alloc_unset(bytes, 1, "a file of the cache", NULL);

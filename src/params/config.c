@@ -311,7 +311,7 @@ static char *open_look(Reader *reader, GError **error)
     size_t bytes;
     g_autofree char *folder = fl_look_unpack(reader->path, error);
     g_autofree char *config = folder ? g_build_filename(folder, FL_LOOK_CONFIG, NULL) : NULL;
-    if (!config || !fl_file_read(config, 1 << 20, &text, &bytes, error))
+    if (!config || !fl_file_read(config, 1 << 20, NULL, &text, &bytes, error))
         return NULL;
     g_free(reader->folder);
     reader->folder = g_steal_pointer(&folder);

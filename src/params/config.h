@@ -48,7 +48,7 @@ typedef struct FlConfig {
  * `caller`, who may be NULL, is told of the files, and can stop the wait for a pipe.
  *
  * Returns: to be freed with fl_config_free(); NULL with FL_ERROR_USAGE (or an error of
- * fl_file_read_pipe()), which names file, line, the mistake and what was expected.
+ * fl_file_read()), which names file, line, the mistake and what was expected.
  */
 FlConfig *fl_config_load(const char *path, const FlRenderOptions *caller, GError **error);
 

@@ -237,7 +237,7 @@ static char *load(const char *path, const FlKeyReader *reader, GError **error)
 {
     g_autofree char *text = g_strdup(reader->text);
     size_t bytes = text ? strlen(text) : 0;
-    if (!text && !fl_file_read_pipe(path, LARGEST_BYTES, reader->wait, &text, &bytes, error))
+    if (!text && !fl_file_read(path, LARGEST_BYTES, reader->wait, &text, &bytes, error))
         return NULL;
     if (bytes > LARGEST_BYTES) {
         g_set_error(error, FL_ERROR, FL_ERROR_LIMIT, "%s: the file is larger than 1 MiB", path);

@@ -162,7 +162,7 @@ char *fl_look_unpack(const char *path, GError **error)
     const size_t most = (size_t)fl_limit(FL_LIMIT_LOOK) << 20;
     g_autofree char *bytes = NULL;
     size_t n;
-    if (!fl_file_read(path, most, &bytes, &n, error) ||
+    if (!fl_file_read(path, most, NULL, &bytes, &n, error) ||
         !fl_limit_check(FL_LIMIT_LOOK, ceil((double)n / (1 << 20)), path, error))
         return NULL;
     g_autofree char *sum = g_compute_checksum_for_data(G_CHECKSUM_SHA256, (const guchar *)bytes, n);

@@ -32,7 +32,7 @@ static bool add_file(Packing *packing, const char *path, const char *name, GErro
 {
     char *data = NULL;
     size_t bytes;
-    if (!fl_file_read(path, (size_t)fl_limit(FL_LIMIT_LOOK) << 20, &data, &bytes, error))
+    if (!fl_file_read(path, (size_t)fl_limit(FL_LIMIT_LOOK) << 20, NULL, &data, &bytes, error))
         return false;
     packing->bytes += (double)bytes;
     return fl_archive_add(&packing->archive, name, g_bytes_new_take(data, bytes)) &&

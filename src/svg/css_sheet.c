@@ -316,7 +316,7 @@ static void read_file(Reader *reader, const char *href, const Place *place)
     if (!file || !is_there || !fl_file_check(file, FL_ERROR_INPUT, NULL) ||
         !(g_str_has_suffix(lower, ".css") || strstr(lower, ".css?")) ||
         !fl_reference_is_inside(reader->path, file) ||
-        !fl_file_read(file, LARGEST_BYTES, &css, &bytes, NULL)) {
+        !fl_file_read(file, LARGEST_BYTES, NULL, &css, &bytes, NULL)) {
         warn(reader, "sheet", href,
              !file                                        ? "is not in a file and is left out"
              : !is_there                                  ? "does not exist and is left out"

@@ -175,7 +175,7 @@ static bool read_bytes(const char *path, char **data, gsize *bytes, GError **err
         !fl_limit_check(FL_LIMIT_DRAWING, mebibytes((double)info.st_size), path, error))
         return false;
     const size_t most = (size_t)MIN(fl_limit(FL_LIMIT_DRAWING), 2047) << 20;
-    if (!fl_file_read(path, most, data, bytes, error) ||
+    if (!fl_file_read(path, most, NULL, data, bytes, error) ||
         !fl_limit_check(FL_LIMIT_DRAWING, mebibytes((double)*bytes), path, error))
         return false;
     if (*bytes > 2 && (guint8)(*data)[0] == 0x1f && (guint8)(*data)[1] == 0x8b)
