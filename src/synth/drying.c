@@ -16,10 +16,10 @@
 #define FALL_LEFT 0.36f // 2.25 frames: of an edge that recedes
 #define LEAST_STEP 2    // of FL_WET, so that it ends
 #define PALE 0.45f      // share of its density that fresh paint lacks
-#define DRY_AT 0.35f    // wetness up to which paint is as dense as it gets,
-#define FRESH_AT 0.95f  // and from which on it is fresh
+#define DRY_AT 0.30f    // wetness up to which paint is as dense as it gets,
+#define FRESH_AT 0.80f  // and from which on it is fresh
 #define GATHERS 0.45f   // added density at the rim of a receding edge
-#define RIM 7.0f        // units: how wide it is
+#define RIM 9.0f        // units: how wide it is
 #define BESIDE 3.0f     // units outside the contour: there an edge meets paper or paint
 
 static float smoothstep(float low, float high, float v)
