@@ -88,11 +88,10 @@ typedef struct Row {
     float slope[4][2][FL_NOISE_ROW];
 } Row;
 
-/* Always handles a full row, whatever its length, so that the compiler vectorises the loop. A cast
- * truncates; for negative numbers 1 is subtracted to get the floor. */
-static void find_cells(const float *restrict x, const float *restrict y, Row *restrict row)
+/* A cast truncates, and is vectorised; for negative numbers 1 is subtracted to get the floor. */
+static void find_cells(const float *restrict x, const float *restrict y, int n, Row *restrict row)
 {
-    for (int i = 0; i < FL_NOISE_ROW; i++) {
+    for (int i = 0; i < n; i++) {
         const int32_t ix = (int32_t)x[i], iy = (int32_t)y[i];
         row->ix[i] = ix - (x[i] < (float)ix);
         row->iy[i] = iy - (y[i] < (float)iy);
@@ -133,9 +132,9 @@ static float row_rise(const Row *row, int corner, int i, float dx, float dy)
     return row->slope[corner][0][i] * dx + row->slope[corner][1][i] * dy;
 }
 
-static void mix_slopes(const Row *restrict row, float *restrict noise)
+static void mix_slopes(const Row *restrict row, int n, float *restrict noise)
 {
-    for (int i = 0; i < FL_NOISE_ROW; i++) {
+    for (int i = 0; i < n; i++) {
         const float dx = row->dx[i], dy = row->dy[i], tx = ease(dx);
         const float upper = mix(row_rise(row, 0, i, dx, dy), row_rise(row, 1, i, dx - 1, dy), tx);
         const float lower =
@@ -147,13 +146,9 @@ static void mix_slopes(const Row *restrict row, float *restrict noise)
 void fl_noise_row(uint64_t key, const float *x, const float *y, int n, float *noise)
 {
     Row row;
-    float place[2][FL_NOISE_ROW] = {{0}};
-    memset(row.slope, 0, sizeof row.slope);
-    memcpy(place[0], x, (size_t)n * sizeof *x);
-    memcpy(place[1], y, (size_t)n * sizeof *y);
-    find_cells(place[0], place[1], &row);
+    find_cells(x, y, n, &row);
     find_slopes(key, n, &row);
-    mix_slopes(&row, noise);
+    mix_slopes(&row, n, noise);
 }
 
 void fl_noise_octaves_row(uint64_t key, const float *x, const float *y, int n, int octaves,

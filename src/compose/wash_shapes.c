@@ -87,19 +87,37 @@ void fl_field_blur(const FlWashField *field, float *plane, float sigma_px)
 
 #define LEAK .05f // of what is spread from a point within a shape to one beside it
 
-/* Spreads a plane down and up its rows: as far as a point and the one before it lie in a shape, a
- * share of what came to that one goes on. room: as large as the plane. */
+/* What comes into a row from the one beside it: as far as points of both lie in a shape, a share of
+ * what came there goes on. Rows lie apart, which lets the compiler vectorise this. */
+static void come_from(const float *restrict beside, const float *restrict mask_beside,
+                      const float *restrict mask, int n, float share, float *restrict come)
+{
+    for (int x = 0; x < n; x++) {
+        const float own = mask[x], its = mask_beside[x], least = own < its ? own : its;
+        come[x] = share * (least > LEAK ? least : LEAK) * beside[x];
+    }
+}
+
+static void add_row(float *restrict row, const float *restrict more, int n)
+{
+    for (int x = 0; x < n; x++)
+        row[x] += more[x];
+}
+
+/* Spreads a plane down and up its rows. room: as large as the plane; come: as long as a row. */
 static void spread_rows(float *plane, const float *mask, int width, int height, float share,
-                        float *room)
+                        float *room, float *come)
 {
     const int n = width * height;
     memcpy(room, plane, (size_t)n * sizeof *room);
-    for (int i = width; i < n; i++)
-        plane[i] += share * MAX(MIN(mask[i], mask[i - width]), LEAK) * plane[i - width];
-    for (int i = n - width - 1; i >= 0; i--) {
-        const float come = share * MAX(MIN(mask[i], mask[i + width]), LEAK) * room[i + width];
-        plane[i] += come;
-        room[i] += come;
+    for (int i = width; i < n; i += width) {
+        come_from(plane + i - width, mask + i - width, mask + i, width, share, come);
+        add_row(plane + i, come, width);
+    }
+    for (int i = n - 2 * width; i >= 0; i -= width) {
+        come_from(room + i + width, mask + i + width, mask + i, width, share, come);
+        add_row(plane + i, come, width);
+        add_row(room + i, come, width);
     }
 }
 
@@ -110,12 +128,13 @@ static void spread(const FlWashField *field, float *plane, float sigma_px)
     const float sigma = sigma_px * field->input->paper_px / (float)field->wash->step;
     float *turned = field->turned, *mask = turned + fl_wash_points(field->wash),
           *room = mask + fl_wash_points(field->wash);
+    g_autofree float *come = g_new(float, MAX(width, height));
     transpose(field->mask, width, height, mask);
     for (int k = 0; k < 3; k++) {
         const float share = fl_fall(1.62f * (float)(1 << k) / sigma);
-        spread_rows(plane, field->mask, width, height, share, room);
+        spread_rows(plane, field->mask, width, height, share, room, come);
         transpose(plane, width, height, turned);
-        spread_rows(turned, mask, height, width, share, room);
+        spread_rows(turned, mask, height, width, share, room, come);
         transpose(turned, height, width, plane);
     }
 }
