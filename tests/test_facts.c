@@ -4,7 +4,6 @@
 #include "job/outputs.h"
 #include "job/plan.h"
 #include "job/region_plan.h"
-#include "job/resume.h"
 #include "option_values.h"
 #include "scratch.h"
 #include <fcntl.h>

@@ -2,7 +2,7 @@
 #ifndef FLUIDY_CLI_ARGS_H
 #define FLUIDY_CLI_ARGS_H
 
-#include "params/program.h"
+#include "params/options.h"
 #include <fluidy/fluidy.h>
 
 typedef enum FlCommand {

@@ -197,21 +197,11 @@ FlDrawList *fl_hold_draw_list(const FlDrawing *drawing, const FlHand *hand, int 
                               const int *hold_of, int frame, GError **error);
 
 /**
- * Opens the drawing of options, which fl_config_complete() has completed, with the config's rules.
- *
- * Warnings, also of sections that match no region, go to the caller.
- *
- * Returns: to be freed with fl_drawing_free(); NULL with an error as of fl_drawing_open(), or with
- * FL_ERROR_INPUT if there was a warning and the options are strict.
+ * fl_drawing_open() for a caller, by the rules of a config. The caller is told the progress and the
+ * warnings, also of sections that match no region; a warning is an error, FL_ERROR_INPUT, if the
+ * caller is strict.
  */
-FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfig *config,
-                                   const FlCaller *caller, GError **error);
-
-/**
- * The frames that the options name, found by their files' names; the files are not read.
- *
- * Returns: to be freed with fl_sequence_free(); NULL with FL_ERROR_USAGE or FL_ERROR_INPUT.
- */
-FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **error);
+FlDrawing *fl_drawing_open_for(const FlDrawingOptions *options, const FlConfig *config,
+                               const FlCaller *caller, GError **error);
 
 #endif

@@ -130,57 +130,24 @@ static bool tell_reading(void *data, const FlSequence *sequence, int done)
     return caller->progress(&progress, caller->data);
 }
 
-/** The moments of a drawing that plays. */
-static FlMoments moments_of(const FlRenderOptions *options)
-{
-    const double fps = options->fps > 0 ? options->fps : 24;
-    return (FlMoments){fps, MAX(options->from_s, 0), MAX(options->to_s, 0)};
-}
-
-FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfig *config,
-                                   const FlCaller *caller, GError **error)
+FlDrawing *fl_drawing_open_for(const FlDrawingOptions *options, const FlConfig *config,
+                               const FlCaller *caller, GError **error)
 {
     if (!fl_headroom_check(error))
         return NULL;
-    FlDrawingOptions wanted = {.inputs = options->inputs,
-                               .n_inputs = (int)g_strv_length((char **)options->inputs),
-                               .range = options->frames,
-                               .missing = options->missing,
-                               .frames_from = options->frames_from,
-                               .moments = moments_of(options),
-                               .dpi = options->dpi,
-                               .apart = true,
-                               .sandbox = options->sandbox,
-                               .registered = options->registration == FL_REGISTRATION_ON,
-                               .width = options->width,
-                               .height = options->height,
-                               .scale = options->scale,
-                               .most_side = options->most_side,
-                               .strokes = options->stroke,
-                               .key = options->key,
-                               .reading = caller->progress ? tell_reading : NULL,
-                               .data = (void *)(uintptr_t)caller,
-                               .rules = config->rules,
-                               .n_rules = config->n_rules};
-    if (options->canvas && !fl_canvas_parse(options->canvas, &wanted.canvas, error))
-        return NULL;
+    FlDrawingOptions wanted = *options;
+    wanted.reading = caller->progress ? tell_reading : NULL;
+    wanted.data = (void *)(uintptr_t)caller;
+    wanted.rules = config->rules, wanted.n_rules = config->n_rules;
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
     g_autoptr(FlDrawing) drawing = fl_drawing_open(&wanted, warnings, error);
     if (!drawing)
         return NULL;
-    offer_config(drawing, options->config, caller);
+    offer_config(drawing, config->path, caller);
     warn_of_nothing(drawing, warnings);
     warn_of_unused(drawing, config, &wanted, warnings);
-    if (options->missing > FL_MISSING_ERROR &&
-        !fl_drawing_leave_out_bad(drawing, options->missing, warnings, error))
+    if (wanted.missing > FL_MISSING_ERROR &&
+        !fl_drawing_leave_out_bad(drawing, wanted.missing, warnings, error))
         return NULL;
     return report(warnings, caller, error) ? g_steal_pointer(&drawing) : NULL;
-}
-
-FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **error)
-{
-    const FlSequenceOptions wanted = {options->frames, options->missing, options->frames_from,
-                                      moments_of(options), options->sandbox};
-    return fl_sequence_open(options->inputs, (int)g_strv_length((char **)options->inputs), &wanted,
-                            NULL, error);
 }

@@ -1,6 +1,6 @@
 #include "base/json.h"
 #include "job/plan.h"
-#include "params/program.h"
+#include "params/options.h"
 #include <string.h>
 
 /* A task: regions that are painted by one process. */

@@ -2,7 +2,7 @@
 
 #include "base/json.h"
 #include "io/png.h"
-#include "params/program.h"
+#include "params/options.h"
 #include <gio/gio.h>
 #include <math.h>
 #include <string.h>

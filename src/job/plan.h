@@ -6,6 +6,7 @@
 #include "job/region_plan.h"
 #include "job/style_cache.h"
 #include "keep/inputs.h"
+#include "keep/record.h"
 #include "keep/store.h"
 #include "params/config.h"
 
@@ -85,6 +86,17 @@ FlDigest fl_request_digest(const FlPlan *plan, const FlSequence *sequence);
 
 /* ---- the steps of planning, in their order; each fills its part of the plan ---------------- */
 
+/** The drawing of options that fl_config_complete() has completed: fl_drawing_open_for(). */
+FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfig *config,
+                                   const FlCaller *caller, GError **error);
+
+/**
+ * The frames that the options name, found by their files' names; the files are not read.
+ *
+ * Returns: to be freed with fl_sequence_free(); NULL with FL_ERROR_USAGE or FL_ERROR_INPUT.
+ */
+FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **error);
+
 /** Names the output and looks whether it is free, before the drawing is read. */
 bool fl_plan_find_output(FlPlan *plan, GError **error);
 
@@ -115,6 +127,80 @@ bool fl_plan_choose_styles(FlPlan *plan, GError **error);
 /** Settles the fluid of a region that has a style and an engine: the style's, if the settings name
  * none and motion does not come from masks or from a given flow. FL_ERROR_USAGE if both do. */
 bool fl_plan_choose_fluid(FlRegionPlan *painted, bool flow, GError **error);
+
+/* ---- an interrupted render: its record, its lock, and files that exist ------------------------
+ */
+
+typedef struct FlResume {
+    char *path;         // of the record file; NULL: a film without its frames, which cannot resume
+    FlRecord *record;   // the latest
+    bool written;       // the file has a record
+    bool found;         // the record was written by an earlier run
+    bool forgets;       // an interrupted run leaves no record
+    FlDigest made_from; // of all that decides the frames
+    int first;          // the first frame that this run paints
+    bool keep_files;    // existing files stay
+    char *lock_path;    // beside the record; NULL: not locked
+    int lock;           // its descriptor, where files can be locked
+} FlResume;
+
+/**
+ * Asks the record in plan->cache of the render that wrote the plan's frames last: the same request,
+ * and the digests of all files that it read and wrote, mean that they are finished. For renders of
+ * frames and films alone, without layers, paint, statistics or a report. Frames that exist and are
+ * to be kept are finished in any case. Reads no drawing. Sets plan->made_from if the request and
+ * what it reads are the same.
+ */
+FlFinished fl_resume_look(FlPlan *plan, const FlSequence *sequence);
+
+/**
+ * Looks for the record of an interrupted run and decides which frame comes first, without writing.
+ *
+ * Returns: false with FL_ERROR_CHANGED, which names what has changed, FL_ERROR_EXISTS if a file
+ * must not be overwritten, or FL_ERROR_USAGE.
+ */
+bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error);
+
+/**
+ * Looks by names alone, before anything is read, whether the frames and the film exist that a run
+ * may not replace. Where an interrupted run has left its record, fl_resume_init() decides.
+ *
+ * Returns: false with FL_ERROR_EXISTS or FL_ERROR_USAGE.
+ */
+bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GError **error);
+
+/** Locks the files of the run that is resumed, if any. FL_ERROR_EXISTS as below. */
+bool fl_resume_start(FlResume *resume, const FlPlan *plan, GError **error);
+
+/**
+ * Call it when a frame is painted, before its files are written. FL_ERROR_CHANGED if the frame's
+ * drawing has changed since the render began, FL_ERROR_EXISTS if another run is writing the same
+ * frames, FL_ERROR_OUTPUT.
+ */
+bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GError **error);
+
+/** Saves the record once a frame's files are written. FL_ERROR_OUTPUT. */
+bool fl_resume_save(const FlResume *resume, GError **error);
+
+/** True if files of a frame may be replaced: on request, or in the interrupted frame. */
+bool fl_resume_replaces(const FlResume *resume, int frame);
+
+/** True if a file exists and stays. */
+bool fl_resume_keeps(const FlResume *resume, const char *file);
+
+/** The advice after an interruption; static. */
+const char *fl_resume_advice(const FlResume *resume);
+
+/** Removes the record file of a complete render, and keeps the record in plan->cache. */
+void fl_resume_finish(FlResume *resume, const FlPlan *plan);
+
+void fl_resume_clear(FlResume *resume);
+
+/**
+ * Compares the marks of frames, layers, paint and film with what the plan would make, and notes
+ * each file that differs. Returns: false with FL_ERROR_CHANGED if any does.
+ */
+bool fl_resume_verify(const FlPlan *plan, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPlan, fl_plan_free)
 

@@ -4,9 +4,47 @@
 #include "drawing/drawing.h"
 #include "io/pattern.h"
 #include "io/picture_file.h"
-#include "job/resume.h"
 #include "params/options.h"
 #include <string.h>
+
+/* The moments of a drawing that plays. */
+static FlMoments moments_of(const FlRenderOptions *options)
+{
+    const double fps = options->fps > 0 ? options->fps : 24;
+    return (FlMoments){fps, MAX(options->from_s, 0), MAX(options->to_s, 0)};
+}
+
+FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfig *config,
+                                   const FlCaller *caller, GError **error)
+{
+    FlDrawingOptions wanted = {.inputs = options->inputs,
+                               .n_inputs = (int)g_strv_length((char **)options->inputs),
+                               .range = options->frames,
+                               .missing = options->missing,
+                               .frames_from = options->frames_from,
+                               .moments = moments_of(options),
+                               .dpi = options->dpi,
+                               .apart = true,
+                               .sandbox = options->sandbox,
+                               .registered = options->registration == FL_REGISTRATION_ON,
+                               .width = options->width,
+                               .height = options->height,
+                               .scale = options->scale,
+                               .most_side = options->most_side,
+                               .strokes = options->stroke,
+                               .key = options->key};
+    if (options->canvas && !fl_canvas_parse(options->canvas, &wanted.canvas, error))
+        return NULL;
+    return fl_drawing_open_for(&wanted, config, caller, error);
+}
+
+FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **error)
+{
+    const FlSequenceOptions wanted = {options->frames, options->missing, options->frames_from,
+                                      moments_of(options), options->sandbox};
+    return fl_sequence_open(options->inputs, (int)g_strv_length((char **)options->inputs), &wanted,
+                            NULL, error);
+}
 
 static char *default_output(const FlPlan *plan)
 {

@@ -1,4 +1,4 @@
-#include "job/resume.h"
+#include "job/plan.h"
 
 #include "base/error.h"
 #include "drawing/drawing.h"

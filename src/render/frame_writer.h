@@ -4,7 +4,7 @@
 
 #include "compose/composite.h"
 #include "job/outputs.h"
-#include "job/resume.h"
+#include "job/plan.h"
 
 typedef struct FlFrameWriter {
     const FlOutputs *out;      // borrowed

@@ -4,7 +4,7 @@
 #include "base/schedule.h"
 #include "inspect/ebsynth.h"
 #include "inspect/stats.h"
-#include "job/resume.h"
+#include "job/plan.h"
 #include "params/options.h"
 #include "render/frame_writer.h"
 #include "render/frames.h"
