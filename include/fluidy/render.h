@@ -160,6 +160,8 @@ typedef struct FlRenderOptions {
     const char *output; /**< pattern; NULL: the config's, else "fluidy/NAME_%04d.png", NAME from the
                            input */
     const char *format; /**< "png", "png16", "exr", "mov", …; NULL: as the output's name ends */
+    bool vectors;       /**< of OpenEXR files: also the motion of each pixel, backward.u and .v */
+    bool thickness;     /**< of OpenEXR files: also the thickness of the paint at each pixel */
     bool no_frames; /**< if the output is a film, write the film alone, without its frames as PNG
                        files */
     const char *layers; /**< pattern with {region} for one RGBA file per region; NULL: no layers */

@@ -365,5 +365,6 @@ void fl_composite_clear(FlComposite *composite)
     free(composite->sheet);
     free(composite->rgba);
     free(composite->rgba16);
+    free(composite->vectors);
     *composite = (FlComposite){0};
 }

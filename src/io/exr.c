@@ -11,6 +11,7 @@
 
 #include <OpenEXR/openexr.h>
 #include <libdeflate.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,6 +38,11 @@ typedef struct Writer {
 
 static const char components[] = "RGBA";
 
+/** Channels of floats behind those of the mattes. */
+enum { THICKNESS = FL_MATTES_CHANNELS, BACKWARD_U, BACKWARD_V, FLOAT_CHANNELS };
+
+static const char *const float_names[] = {"paint.thickness", "backward.u", "backward.v"};
+
 /** The half float nearest to 0 <= value <= 1, ties to even. */
 static uint16_t half_of(float value)
 {
@@ -56,6 +62,7 @@ static uint16_t half_of(float value)
 }
 
 static uint16_t halves_of[256][256]; // by alpha and level
+static float density_of[256];        // optical, by level
 
 /** OpenEXR's convention: linear light times alpha. */
 static void fill_halves(void)
@@ -67,6 +74,8 @@ static void fill_halves(void)
         for (int level = 0; level < 256; level++)
             halves_of[alpha][level] =
                 half_of(fl_srgb_to_linear((uint8_t)level) / 65535.0f * ((float)alpha / 255.0f));
+    for (int level = 0; level < 256; level++) // that of black is finite
+        density_of[level] = log10f(65535.0f / (float)MAX(fl_srgb_to_linear((uint8_t)level), 20));
     g_once_init_leave(&made, 1);
 }
 
@@ -135,6 +144,22 @@ static bool add_mattes(Writer *writer)
            set_text(writer, "manifest", manifest->str);
 }
 
+/** True if a channel of float_names is asked for. */
+static bool has_floats(const Writer *writer, int channel)
+{
+    return channel == THICKNESS ? writer->frame->thickness : writer->frame->vectors != NULL;
+}
+
+static bool add_floats(Writer *writer)
+{
+    for (int c = THICKNESS; c < FLOAT_CHANNELS; c++)
+        if (has_floats(writer, c) &&
+            !went(writer, exr_add_channel(writer->context, 0, float_names[c - THICKNESS],
+                                          EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1)))
+            return false;
+    return true;
+}
+
 /** Rec. 709, whose primaries and white are sRGB's. */
 static const exr_attr_chromaticities_t rec_709 = {.64f, .33f, .30f,   .60f,
                                                   .15f, .06f, .3127f, .3290f};
@@ -155,7 +180,7 @@ static bool put_header(Writer *writer, const Layer *whole)
     for (int k = 0; k < frame->n_layers; k++)
         if (!add_layer_channels(writer, &frame->layers[k]))
             return false;
-    return (!has_mattes(writer) || add_mattes(writer)) &&
+    return (!has_mattes(writer) || add_mattes(writer)) && add_floats(writer) &&
            went(writer, exr_write_header(writer->context)) &&
            went(writer, exr_get_scanlines_per_chunk(writer->context, 0, &writer->chunk_rows));
 }
@@ -166,6 +191,11 @@ static void map_channel(Writer *writer, int channel, const char *name, const Lay
     const FlSinkFrame *frame = writer->frame;
     const char *dot = strrchr(name, '.');
     const size_t length = dot ? (size_t)(dot - name) : 0;
+    for (int c = THICKNESS; c < FLOAT_CHANNELS; c++)
+        if (strcmp(name, float_names[c - THICKNESS]) == 0) {
+            writer->layer[channel] = NULL, writer->component[channel] = c;
+            return;
+        }
     writer->component[channel] = (int)(strchr(components, dot ? dot[1] : name[0]) - components);
     writer->layer[channel] = dot ? NULL : whole;
     for (int k = 0; k < frame->n_layers && dot; k++)
@@ -224,11 +254,11 @@ static bool chunk_init(Chunk *chunk, const Writer *writer, GError **error)
     chunk->bytes = chunk->halves ? fl_alloc_unset(rows, row_bytes, "an OpenEXR file", error) : NULL;
     chunk->packed = chunk->bytes ? fl_alloc_unset(rows, row_bytes, "an OpenEXR file", error) : NULL;
     chunk->rgba = chunk->packed ? fl_alloc(width, 4, "an OpenEXR file", error) : NULL;
-    float *mattes = chunk->rgba ? fl_alloc(width * (FL_MATTES_CHANNELS + 1), sizeof *mattes,
+    float *mattes = chunk->rgba ? fl_alloc(width * (FLOAT_CHANNELS + 1), sizeof *mattes,
                                            "an OpenEXR file", error)
                                 : NULL;
     if (mattes)
-        chunk->mattes = (FlMatteRow){writer->width, mattes, mattes + width * FL_MATTES_CHANNELS};
+        chunk->mattes = (FlMatteRow){writer->width, mattes, mattes + width * FLOAT_CHANNELS};
     if (mattes && !chunk->compressor)
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to compress");
     return mattes && chunk->compressor;
@@ -294,6 +324,31 @@ static void make_mattes(Chunk *chunk, const Writer *writer, int y)
     }
 }
 
+/** The sum of the optical densities of all layers of regions: a decimal logarithm of the light that
+ * a layer keeps back, times its alpha. */
+static void make_thickness(Chunk *chunk, const Writer *writer, int y)
+{
+    float *thickness = chunk->mattes.value + (size_t)THICKNESS * (size_t)writer->width;
+    memset(thickness, 0, (size_t)writer->width * sizeof *thickness);
+    for (int k = 0; k < writer->frame->n_layers; k++)
+        if (writer->id[k] && copy_row(chunk, writer, &writer->frame->layers[k], y))
+            for (int x = 0; x < writer->width; x++) {
+                const uint8_t *rgba = chunk->rgba + 4 * (size_t)x;
+                const float sum = density_of[rgba[0]] + density_of[rgba[1]] + density_of[rgba[2]];
+                thickness[x] += sum * (float)rgba[3] / (3 * 255);
+            }
+}
+
+/** OpenEXR's programs have y upwards, and ask where a pixel was. */
+static void make_vectors(Chunk *chunk, const Writer *writer, int y)
+{
+    const size_t width = (size_t)writer->width;
+    const float *from = writer->frame->vectors + 2 * (size_t)y * width;
+    float *u = chunk->mattes.value + BACKWARD_U * width, *v = u + width;
+    for (size_t x = 0; x < width; x++)
+        u[x] = -from[2 * x], v[x] = from[2 * x + 1];
+}
+
 /** Writes floats, the lower 16 bits of each first. */
 static void put_floats(const float *value, int n, uint16_t *halves)
 {
@@ -313,6 +368,10 @@ static void fill_chunk(Chunk *chunk, const Writer *writer, int y, int n)
         bool filled = false;
         if (has_mattes(writer))
             make_mattes(chunk, writer, y + r);
+        if (writer->frame->thickness)
+            make_thickness(chunk, writer, y + r);
+        if (writer->frame->vectors)
+            make_vectors(chunk, writer, y + r);
         for (int c = 0; c < writer->n_channels; c++) {
             const Layer *layer = writer->layer[c];
             if (layer && layer != copied)

@@ -30,6 +30,9 @@ typedef struct FlSinkFrame {
     const uint16_t *rgba16;    // the same with 16 bits, if the format takes_16; else NULL
     const FlSinkLayer *layers; // bottom first, if the format takes_layers; else NULL
     int n_layers;
+    const float *vectors; // of OpenEXR: 2 * width * height px that each pixel has come right and
+                          // down since the frame before; NULL: not asked for
+    bool thickness;       // of OpenEXR: also that of the paint
 } FlSinkFrame;
 
 /** Gets a frame of width * height pixels. Returns: false with the error set ends the render. */

@@ -20,7 +20,7 @@ typedef struct FlOutputs {
     const char *layers, *paint, *stats, *provenance, *report, *dump, *ebsynth;
     FlPaintArea paint_area;
     FlOverwrite overwrite;
-    bool merge;
+    bool merge, thickness;
     double fps;
 } FlOutputs;
 

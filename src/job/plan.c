@@ -123,6 +123,11 @@ static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
             "no input: expected SVG files, a folder, or a pattern such as input_%%04d.svg");
     if (!check_options(&plan->options, error) || !fl_plan_find_output(plan, error))
         return false;
+    if ((plan->options.vectors || plan->options.thickness) &&
+        strcmp(plan->out.format->name, "exr") != 0)
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "‘%s’ is a part of OpenEXR files; expected an output such as walk_%%04d.exr",
+                       plan->options.vectors ? "vectors" : "thickness");
     if (plan->finished == FL_FINISHED_ALL ||
         (plan->options.verify && fl_digest_is_known(plan->made_from)))
         return true;
@@ -178,6 +183,7 @@ static void choose_written(FlPlan *plan, const FlRenderOptions *given)
                             .paint_area = o->paint_area,
                             .overwrite = o->overwrite,
                             .merge = o->merge,
+                            .thickness = o->thickness,
                             .fps = o->fps};
 }
 
@@ -309,6 +315,7 @@ FlPlan *fl_plan_earlier(const FlPlan *plan, int *first, GError **error)
     options.output = options.layers = options.paint = NULL, options.format = "null";
     options.merge = options.loop = options.strict = options.verify = false;
     options.dry_run = true, options.part = NULL;
+    options.vectors = options.thickness = false;
     options.progress = NULL, options.warning = options.note = NULL, options.reads = NULL;
     FlPlan *earlier = fl_plan_new(&options, error);
     if (earlier)

@@ -107,7 +107,9 @@ bool fl_frame_writer_frame(FlFrameWriter *writer, const FlComposite *composite, 
                              .rgba = composite->rgba,
                              .rgba16 = composite->rgba16,
                              .layers = layers,
-                             .n_layers = n_layers};
+                             .n_layers = n_layers,
+                             .vectors = composite->vectors,
+                             .thickness = writer->out->thickness};
     if (writer->out->layers && !write_layers(writer, composite, frame, error))
         return false;
     if (writer->sink->format->film)

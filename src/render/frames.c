@@ -12,6 +12,7 @@
 #include "inspect/ebsynth.h"
 #include "io/picture_file.h"
 #include "worker/messages.h"
+#include <math.h>
 
 #define WET_IN_DRAFTS 3 // frames from which wet paper is known
 
@@ -237,19 +238,71 @@ static FlWet *new_wet(const FlFrames *frames, const FlShapes *shapes, FlWet *bef
     return fl_wet_new(shapes, &options, before, wet_motion, motion, error);
 }
 
+/* Motion in half the size, of all regions. */
+static FlMotionSource *halved_motion(FlFrames *frames, GError **error)
+{
+    const FlShapes *shapes = &frames->plan->shapes;
+    if (frames->painters.motion[1])
+        return frames->painters.motion[1];
+    if (!frames->motion)
+        frames->motion = fl_motion_source_new(shapes->drawing, shapes->masks, true, error);
+    return frames->motion;
+}
+
 static bool open_wet(FlFrames *frames, GError **error)
 {
     const FlPlan *plan = frames->plan;
     frames->marked = -1;
-    FlMotionSource *motion = frames->painters.motion[1];
-    if (!motion && !frames->motion)
-        frames->motion =
-            fl_motion_source_new(plan->shapes.drawing, plan->shapes.masks, true, error);
-    motion = motion ? motion : frames->motion;
+    FlMotionSource *motion = halved_motion(frames, error);
     if (!motion)
         return false;
     frames->wet = new_wet(frames, &plan->shapes, frames->wet, motion, error);
     return frames->wet;
+}
+
+/* Adds the motion of a region where a draw covers what lies below. A held picture is at rest. */
+static bool add_vectors(FlFrames *frames, const FlDraw *draw, int frame, float *vectors,
+                        GError **error)
+{
+    const FlShapes *shapes = &frames->plan->shapes;
+    const FlRect page = {0, 0, shapes->width, shapes->height};
+    const FlRect box = draw->area.box, part = fl_rect_and(fl_rect_on_grid(box, 2), page);
+    const int hold = shapes->hold_of[draw->region], last = (shapes->n_frames - 1) / hold * hold;
+    const int before = frame >= hold ? frame - hold : shapes->loop ? last : -1;
+    FlMotionSource *motion = halved_motion(frames, error);
+    g_autofree float *own = fl_alloc(2 * fl_rect_pixels(part), sizeof *own, "a motion", error);
+    if (!motion || !own)
+        return false;
+    if (shapes->painted_of[draw->region] >= 0 && before >= 0 && frame % hold == 0 &&
+        !wet_motion(motion, draw->region, before, frame, part, own, error))
+        return false;
+    for (int y = box.y; y < box.y + box.height; y++)
+        for (int x = box.x; x < box.x + box.width; x++) {
+            const float *from =
+                own + 2 * ((size_t)(y - part.y) * (size_t)part.width + (size_t)(x - part.x));
+            float *to = vectors + 2 * ((size_t)y * (size_t)page.width + (size_t)x);
+            if (draw->coverage[(size_t)(y - box.y) * (size_t)box.width + (size_t)(x - box.x)] > 127)
+                to[0] = isnan(from[0]) ? 0 : from[0], to[1] = isnan(from[1]) ? 0 : from[1];
+        }
+    return true;
+}
+
+/* The vectors of a composite, in the size of the page. */
+static bool find_vectors(FlFrames *frames, int frame, FlComposite *composite, GError **error)
+{
+    const FlShapes *shapes = &frames->plan->shapes;
+    const size_t n = (size_t)shapes->page_width * (size_t)shapes->page_height;
+    g_autofree float *vectors = fl_alloc(2 * n, sizeof *vectors, "motion vectors", error);
+    for (int k = 0; vectors && k < composite->draws->n; k++)
+        if (fl_rect_pixels(composite->draws->draw[k].area.box) > 0 &&
+            !add_vectors(frames, &composite->draws->draw[k], frame, vectors, error))
+            return false;
+    if (!vectors || shapes->width == shapes->page_width)
+        return (composite->vectors = g_steal_pointer(&vectors));
+    composite->vectors = fl_alloc(2 * n, sizeof *vectors, "motion vectors", error);
+    if (composite->vectors)
+        fl_flow_double(vectors, shapes->page_width, shapes->page_height, composite->vectors);
+    return composite->vectors;
 }
 
 static bool starts_late(const FlPlan *plan)
@@ -337,7 +390,8 @@ static bool compose(FlFrames *frames, int frame, int next, bool marks, FlComposi
         fl_composite_init(composite, &input, shown, g_steal_pointer(&draws),
                           plan->out.format->takes_16, error) &&
         (frames->small || shapes->width == shapes->page_width ||
-         fl_composite_enlarge(composite, shapes->page_width, shapes->page_height, error));
+         fl_composite_enlarge(composite, shapes->page_width, shapes->page_height, error)) &&
+        (!plan->options.vectors || find_vectors(frames, shown, composite, error));
     trim(plan);
     return made;
 }
