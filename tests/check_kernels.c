@@ -375,34 +375,6 @@ static void fluids_are_compared_as_in_c(const void *version)
     }
 }
 
-static void make_matches(FlMatch *coarse, uint16_t most[2], FlRng *rng)
-{
-    for (int axis = 0; axis < 2; axis++)
-        most[axis] = (uint16_t)(16 * fl_rng_below(rng, fl_rng_below(rng, 2) ? 4096 : 3));
-    for (int i = 0; i < ROW; i++)
-        coarse[i] = (FlMatch){(uint16_t)fl_rng_below(rng, i % 8 ? most[0] / 2 + 1 : 65536),
-                              (uint16_t)fl_rng_below(rng, i % 9 ? most[1] / 2 + 1 : 65536),
-                              (int16_t)(fl_rng_below(rng, 4) - 1), (uint8_t)fl_rng_u32(rng),
-                              (uint8_t)fl_rng_u32(rng)};
-}
-
-static void matches_are_upscaled_as_in_c(const void *version)
-{
-    const FlKernels *kernels = version;
-    FlMatch coarse[ROW], want[2 * ROW], got[2 * ROW];
-    uint16_t most[2];
-    for (uint64_t seed = 1; seed <= 2 * ROW; seed++) {
-        FlRng rng = {seed};
-        const int at = (int)(seed % 5), n = MAX((int)seed - 2 * at, 0);
-        make_matches(coarse, most, &rng);
-        memset(want, 255, sizeof want);
-        memset(got, 255, sizeof got);
-        fl_upscale_row_c(coarse + at, fl_child_moves[seed % 2], most, want + at, n);
-        kernels->upscale_row(coarse + at, fl_child_moves[seed % 2], most, got + at, n);
-        g_assert_cmpmem(got, sizeof got, want, sizeof want);
-    }
-}
-
 enum { PIECES = 50 }; // of a contour
 
 /* Rows of noise, each from any address on, and what follows what is written. */
@@ -579,8 +551,7 @@ static void print_time(const char *kernel, double seconds)
         print_time(name, since(start));                                                            \
     } while (0)
 
-/* A patch whose distances run to the end, 20 candidates of which most are sifted out, a mixed
- * field. */
+/* A patch whose distances run to the end, 20 candidates of which most are sifted out. */
 static void time_version(const FlKernels *kernels)
 {
     FlRng rng = {1};
@@ -594,8 +565,6 @@ static void time_version(const FlKernels *kernels)
     static Votes votes;
     uint32_t pair[2], uniformity[FL_MAX_CANDIDATES];
     float value[4], four[4][4];
-    FlMatch coarse[ROW], fine[ROW];
-    uint16_t most[2];
     make_case(&c, 1);
     make_windows(&w, 16, &rng);
     w.n = 20;
@@ -603,7 +572,6 @@ static void time_version(const FlKernels *kernels)
     do
         make_votes(&votes, &rng);
     while (!fl_vote_c(&votes.covering, &votes.voted, value));
-    make_matches(coarse, most, &rng);
     const FlTexel *centre = centre_of(&c, 1);
     puts(kernels->name);
     TIME("patch_distance",
@@ -616,7 +584,6 @@ static void time_version(const FlKernels *kernels)
     TIME("vote_doubled", kernels->vote_doubled(&votes.covering, &votes.voted, four));
     TIME("spline_sample", kernels->spline_sample(pixels, 8, fl_spline_phases[k % 16].x,
                                                  fl_spline_phases[k % 16].y, value));
-    TIME("upscale_row", kernels->upscale_row(coarse, fl_child_moves[k % 2], most, fine, ROW));
 }
 
 static void time_rows(const FlRowKernels *rows)
@@ -657,7 +624,6 @@ static const Check checks[] = {
     {"the-same-candidates-pass-as-in-c", the_same_tries_pass_as_in_c},
     {"votes-are-those-of-c", votes_are_those_of_c},
     {"doubled-votes-are-those-of-c", doubled_votes_are_those_of_c},
-    {"matches-are-upscaled-as-in-c", matches_are_upscaled_as_in_c},
     {"splines-are-sampled-as-in-c", splines_are_sampled_as_in_c},
     {"fluids-are-compared-as-in-c", fluids_are_compared_as_in_c},
 };

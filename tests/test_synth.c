@@ -73,14 +73,12 @@ static void upscaling_keeps_a_rotated_field_coherent(void)
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);
     g_auto(FlNnf) coarse = {0}, fine = {0};
     g_assert_true(fl_nnf_init(&coarse, 2, 1, &error) && fl_nnf_init(&fine, 4, 2, &error));
-    FlKernels kernels;
-    fl_kernels_init(&kernels, fl_cpu_flags());
     const FlMatch first = {.x_16 = 16 * 14, .y_16 = 16 * 12, .frame = 2, .theta = 40};
     coarse.match[0] = first;
     coarse.match[1] = fl_match_moved(first, 1, 0, &exemplar->level[1]);
     g_auto(FlBlocks) all = {0};
     fl_blocks_init_full(&all, 4, 2);
-    fl_nnf_upscale(&coarse, &exemplar->level[0], &kernels, &all, &fine);
+    fl_nnf_upscale(&coarse, &exemplar->level[0], &all, &fine);
     for (int x = 0; x < 3; x++) {
         const FlMatch moved = fl_match_moved(fine.match[x], 1, 0, &exemplar->level[0]);
         g_assert_cmpint(abs(moved.x_16 - fine.match[x + 1].x_16), <=, 2);

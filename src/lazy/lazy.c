@@ -248,8 +248,7 @@ static bool start_field(FlLazy *lazy, int l, uint64_t key, GError **error)
     if (l + 1 < lazy->n_levels) {
         g_auto(FlBlocks) all = {0};
         fl_blocks_init_full(&all, planes->width, planes->height);
-        fl_nnf_upscale(&level[1].nnf, &lazy->source.level[l].voted, &lazy->kernels, &all,
-                       &level->nnf);
+        fl_nnf_upscale(&level[1].nnf, &lazy->source.level[l].voted, &all, &level->nnf);
         level_clear(&level[1]);
     }
     complete(lazy, l, &warm, key);

@@ -108,24 +108,11 @@ void fl_spline_sample_c(const FlSplinePixel *first, size_t pitch, const int16_t 
     }
 }
 
-void fl_upscale_row_c(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
-                      FlMatch *fine, int n)
-{
-    for (int i = 0; i < n; i++) {
-        FlMatch m = coarse[i / 2];
-        const FlOffset move = moves[m.theta][i % 2];
-        m.x_16 = (uint16_t)CLAMP(2 * m.x_16 + move.x, 0, most[0]);
-        m.y_16 = (uint16_t)CLAMP(2 * m.y_16 + move.y, 0, most[1]);
-        fine[i] = m;
-    }
-}
-
 void fl_kernels_init(FlKernels *kernels, unsigned flags)
 {
-    *kernels =
-        (FlKernels){fl_patch_distance_c, patch_pair_c, fl_draw_candidates_c, fl_filter_candidates_c,
-                    fl_spline_sample_c,  fl_vote_c,    fl_vote_doubled_c,    fl_upscale_row_c,
-                    fl_fluid_distance_c, "c"};
+    *kernels = (FlKernels){fl_patch_distance_c,    patch_pair_c,        fl_draw_candidates_c,
+                           fl_filter_candidates_c, fl_spline_sample_c,  fl_vote_c,
+                           fl_vote_doubled_c,      fl_fluid_distance_c, "c"};
 #if HAVE_NEON
     if (flags & FL_CPU_NEON) {
         kernels->patch_distance = fl_patch_distance_neon;
@@ -134,10 +121,9 @@ void fl_kernels_init(FlKernels *kernels, unsigned flags)
 #endif
 #if HAVE_AVX2
     if (flags & FL_CPU_AVX2)
-        *kernels = (FlKernels){fl_patch_distance_avx2,  fl_patch_pair_avx2,
-                               fl_draw_candidates_avx2, fl_filter_candidates_avx2,
-                               fl_spline_sample_avx2,   fl_vote_avx2,
-                               fl_vote_doubled_avx2,    fl_upscale_row_avx2,
-                               fl_fluid_distance_avx2,  "avx2"};
+        *kernels =
+            (FlKernels){fl_patch_distance_avx2,    fl_patch_pair_avx2,     fl_draw_candidates_avx2,
+                        fl_filter_candidates_avx2, fl_spline_sample_avx2,  fl_vote_avx2,
+                        fl_vote_doubled_avx2,      fl_fluid_distance_avx2, "avx2"};
 #endif
 }

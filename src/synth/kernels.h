@@ -188,14 +188,6 @@ typedef struct FlMatch {
 
 #define FL_NO_MATCH -1
 
-/**
- * A row of n matches of the next finer level, two for each coarse one: match i is coarse[i / 2],
- * its place p now 2 p + moves[theta][i % 2], but at least 0 and at most `most`, 65520 or less.
- * Moves as in fl_child_moves.
- */
-typedef void (*FlUpscaleRow)(const FlMatch *coarse, const FlOffset (*moves)[2],
-                             const uint16_t most[2], FlMatch *fine, int n);
-
 /** One version of every kernel. */
 typedef struct FlKernels {
     FlPatchDistance patch_distance;
@@ -205,7 +197,6 @@ typedef struct FlKernels {
     FlSplineSample spline_sample;
     FlVote vote;
     FlVoteDoubled vote_doubled;
-    FlUpscaleRow upscale_row;
     FlFluidDistance fluid_distance;
     const char *name; // "c", "avx2", …
 } FlKernels;
@@ -248,10 +239,5 @@ bool fl_vote_doubled_c(const FlVoteMatches *covering, const FlVoteSource *voted,
                        float colour[4][4]);
 bool fl_vote_doubled_avx2(const FlVoteMatches *covering, const FlVoteSource *voted,
                           float colour[4][4]);
-
-void fl_upscale_row_c(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
-                      FlMatch *fine, int n);
-void fl_upscale_row_avx2(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
-                         FlMatch *fine, int n);
 
 #endif

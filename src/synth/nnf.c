@@ -114,8 +114,22 @@ static uint16_t clamp_16(int v, int size)
     return (uint16_t)CLAMP(v, 0, 16 * (size - 1));
 }
 
-void fl_nnf_upscale(const FlNnf *coarse, const FlExemplarLevel *fine_level,
-                    const FlKernels *kernels, const FlBlocks *blocks, FlNnf *fine)
+/* A row of n matches, two for each coarse one: each place is doubled and moved as in
+ * fl_child_moves, but stays from 0 to `most`. */
+static void upscale_row(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
+                        FlMatch *fine, int n)
+{
+    for (int i = 0; i < n; i++) {
+        FlMatch m = coarse[i / 2];
+        const FlOffset move = moves[m.theta][i % 2];
+        m.x_16 = (uint16_t)CLAMP(2 * m.x_16 + move.x, 0, most[0]);
+        m.y_16 = (uint16_t)CLAMP(2 * m.y_16 + move.y, 0, most[1]);
+        fine[i] = m;
+    }
+}
+
+void fl_nnf_upscale(const FlNnf *coarse, const FlExemplarLevel *fine_level, const FlBlocks *blocks,
+                    FlNnf *fine)
 {
     const uint16_t most[2] = {(uint16_t)(16 * (fine_level->width - 1)),
                               (uint16_t)(16 * (fine_level->height - 1))};
@@ -123,7 +137,7 @@ void fl_nnf_upscale(const FlNnf *coarse, const FlExemplarLevel *fine_level,
     for (int k = 0; k < blocks->n; k++) {
         const FlRect block = blocks->block[k];
         for (int y = block.y; y < block.y + block.height; y++)
-            kernels->upscale_row(
+            upscale_row(
                 coarse->match + (size_t)(y / 2) * (size_t)coarse->width + (size_t)(block.x / 2),
                 fl_child_moves[y & 1], most,
                 fine->match + (size_t)y * (size_t)fine->width + (size_t)block.x, block.width);

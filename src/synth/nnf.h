@@ -49,8 +49,8 @@ void fl_nnf_repair(FlNnf *nnf, const FlExemplarLevel *level, const FlTargetLevel
 
 /** The field of the next finer level [F21 §3.6, fig. 6] in some blocks; pixels without a parent get
  * no match. */
-void fl_nnf_upscale(const FlNnf *coarse, const FlExemplarLevel *fine_level,
-                    const FlKernels *kernels, const FlBlocks *blocks, FlNnf *fine);
+void fl_nnf_upscale(const FlNnf *coarse, const FlExemplarLevel *fine_level, const FlBlocks *blocks,
+                    FlNnf *fine);
 
 /** Converts the match of a pixel of level l to level 0, at the nearest possible place. */
 FlMatch fl_match_enlarged(FlMatch match, int l, const FlExemplarLevel *full);

@@ -385,8 +385,8 @@ static bool double_view(FlSynth *synth, GError **error)
         !double_plane(&view->temporal_weight, rect, 1, &synth->shown_weight, error))
         return false;
     fl_blocks_init_full(&all, rect.width, rect.height);
-    fl_nnf_upscale(view->nnf, fl_enlargement_level(synth->exemplar->enlargement), &synth->kernels,
-                   &all, &synth->shown);
+    fl_nnf_upscale(view->nnf, fl_enlargement_level(synth->exemplar->enlargement), &all,
+                   &synth->shown);
     view->nnf = &synth->shown;
     return true;
 }

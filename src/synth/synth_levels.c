@@ -152,8 +152,7 @@ static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
     const bool coarsest = l == synth->n_levels - 1;
     const uint64_t key = fl_key(search->key, 1);
     if (!coarsest) {
-        fl_nnf_upscale(&synth->nnf[l + 1], search->level, search->kernels, &target->blocks,
-                       search->nnf);
+        fl_nnf_upscale(&synth->nnf[l + 1], search->level, &target->blocks, search->nnf);
         fl_nnf_clear(&synth->nnf[l + 1]);
     } else if (previous && previous->match)
         copy_blocks(previous, &target->blocks, search->nnf);

@@ -374,29 +374,6 @@ bool fl_vote_doubled_avx2(const FlVoteMatches *covering, const FlVoteSource *vot
                               colour);
 }
 
-/* In 16 bits: a place that overflows is above `most` anyway, and with 8 more no move is negative.
- */
-void fl_upscale_row_avx2(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
-                         FlMatch *fine, int n)
-{
-    const __m256i least = _mm256_set1_epi16(8);
-    const __m256i limit = _mm256_set1_epi32((int)(most[0] | (uint32_t)most[1] << 16));
-    int i = 0;
-    for (; i + 8 <= n; i += 8) {
-        const __m256i m = _mm256_loadu_si256((const __m256i *)(coarse + i / 2));
-        const __m256i theta = _mm256_and_si256(_mm256_srli_epi64(m, 48), _mm256_set1_epi64x(255));
-        const __m256i move = _mm256_i64gather_epi64((const long long *)moves, theta, 8);
-        const __m256i rest = _mm256_shuffle_epi32(m, _MM_SHUFFLE(3, 3, 1, 1));
-        __m256i p = _mm256_shuffle_epi32(m, _MM_SHUFFLE(2, 2, 0, 0)); // of both children
-        p = _mm256_adds_epu16(_mm256_adds_epu16(p, p), _mm256_add_epi16(move, least));
-        p = _mm256_min_epu16(_mm256_subs_epu16(p, least), limit);
-        const __m256i even = _mm256_unpacklo_epi32(p, rest), odd = _mm256_unpackhi_epi32(p, rest);
-        _mm256_storeu_si256((__m256i *)(fine + i), _mm256_permute2x128_si256(even, odd, 0x20));
-        _mm256_storeu_si256((__m256i *)(fine + i + 4), _mm256_permute2x128_si256(even, odd, 0x31));
-    }
-    fl_upscale_row_c(coarse + i / 2, moves, most, fine + i, n - i);
-}
-
 /* The squared differences of a pixel; the past's are weighted first, the others by 32767, which
  * leaves them as they are. */
 static inline __m256i fluid_terms(const FlFluidTexel *source, const FlFluidTexel *target)
