@@ -442,26 +442,19 @@ static void same_bytes_on_any_thread_count(void)
 static bool motion_of_last(void *data, int frame, const FlOutlinePair *outlines, float *motion,
                            GError **error)
 {
-    g_assert_cmpint(frame, ==, 2);
+    static const float of[] = {NAN, 0, 1};
     for (int k = 0; k < 2 * W * H; k++)
-        motion[k] = 1;
+        motion[k] = of[frame];
     return true;
 }
 
-static FlUniformMotion uniform_but_the_last(void *data, int frame, const FlOutlinePair *outlines)
-{
-    static const FlUniformMotion of[] = {FL_UNIFORM_UNKNOWN, FL_UNIFORM_REST, FL_UNIFORM_NOT};
-    return of[frame];
-}
-
-static void uniform_motion_is_not_asked_for(void)
+static void motion_may_be_unknown_and_may_be_none(void)
 {
     static const int expected[] = {FL_MOTION_UNKNOWN, 0, FL_MOTION_ONE};
     Draw draw = growing_disc;
     g_autoptr(GError) error = NULL;
     g_auto(FlGuides) g = {0};
-    const FlGuideSource source = {
-        W, H, 3, draw_mask, NULL, &draw, motion_of_last, .uniform = uniform_but_the_last};
+    const FlGuideSource source = {W, H, 3, draw_mask, NULL, &draw, motion_of_last};
     g_autoptr(FlGuideSequence) s = fl_guide_sequence_new(&source, &unsmoothed, &error);
     g_assert_no_error(error);
     for (int frame = 0; frame < 3; frame++) {
@@ -491,7 +484,7 @@ int main(int argc, char **argv)
     TEST(what_goes_wrong_in_the_source_is_passed_on);
     TEST(stored_integers_of_any_size_come_back);
     TEST(same_bytes_on_any_thread_count);
-    TEST(uniform_motion_is_not_asked_for);
+    TEST(motion_may_be_unknown_and_may_be_none);
 #undef TEST
     return g_test_run();
 }

@@ -419,11 +419,6 @@ static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, int32_
         return true;
     if (!outline_of(b, frame - 1, &outlines.before, error))
         return false;
-    const FlUniformMotion uniform =
-        source->uniform ? source->uniform(source->data, frame, &outlines) : FL_UNIFORM_NOT;
-    b->sequence->frames[frame].unknown = uniform == FL_UNIFORM_UNKNOWN; // as of a first frame
-    if (uniform != FL_UNIFORM_NOT)                                      // as of most regions
-        return true;
     g_autofree float *given = room_for_motion(source, error);
     if (!given || !source->motion(source->data, frame, &outlines, given, error))
         return false;

@@ -58,13 +58,6 @@ static inline FlRect fl_guides_rect(const FlGuides *guides)
 #define FL_MOTION_ONE 16384
 #define FL_MOTION_UNKNOWN INT32_MIN // of both components: where motion is unknown, or no mask
 
-/** Tells if all pixels of a region have the same motion. */
-typedef enum FlUniformMotion {
-    FL_UNIFORM_NOT,
-    FL_UNIFORM_REST,   // all are at rest
-    FL_UNIFORM_UNKNOWN // the former place of every pixel is unknown
-} FlUniformMotion;
-
 /** A mask sequence, with its flow and the drawing's motion if they are known. */
 typedef struct FlGuideSource {
     int width, height, n_frames;
@@ -81,9 +74,6 @@ typedef struct FlGuideSource {
      */
     bool (*motion)(void *data, int frame, const FlOutlinePair *outlines, float *motion,
                    GError **error);
-    /** Tells if that displacement is uniform: then motion() is not called. NULL: unknown
-     * beforehand. */
-    FlUniformMotion (*uniform)(void *data, int frame, const FlOutlinePair *outlines);
 } FlGuideSource;
 
 /** The guides of a whole sequence. Its memory does not grow with the number of frames (FlSpill). */

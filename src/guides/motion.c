@@ -479,17 +479,6 @@ static bool work_init(Work *w, const FlMovingRegion *region, float *motion, GErr
     return w->near != NULL;
 }
 
-bool fl_motion_rests(const FlMovingRegion *region)
-{
-    const Work w = {.region = region};
-    const FlOutlinePair known = region->outlines;
-    bool rests = known.before && known.before == known.now;
-    for (guint i = 0; i < region->leaves->len && rests; i++)
-        rests = motion_of(&w, (int)i)->kind == FL_MOTION_REGISTERED ||
-                (motion_of(&w, (int)i)->kind == FL_MOTION_STILL && !is_unknown(&w, (int)i));
-    return rests;
-}
-
 bool fl_motion_of_region(const FlMovingRegion *region, float *motion, FlMotionShares *shares,
                          GError **error)
 {

@@ -39,8 +39,4 @@ typedef struct FlMotionShares {
 bool fl_motion_of_region(const FlMovingRegion *region, float *motion, FlMotionShares *shares,
                          GError **error);
 
-/** True if neither the mask (by its outlines) nor any leaf has changed: then all motion is 0. The
- * masks themselves are not read. */
-bool fl_motion_rests(const FlMovingRegion *region);
-
 #endif

@@ -235,19 +235,3 @@ bool fl_motion_source_get(FlMotionSource *source, const FlRegionStep *step, floa
     release(source, &use);
     return good;
 }
-
-bool fl_motion_source_rests(FlMotionSource *source, const FlRegionStep *step)
-{
-    const FlOutlinePair known = step->outlines;
-    if (fl_drawing_same_file(source->drawing, step->before, step->now))
-        return true;
-    Use use = {0};
-    bool rests = known.before && known.before == known.now && !known.now->empty;
-    if (rests && (rests = acquire(source, step->before, step->now, &use, NULL))) {
-        g_autoptr(GArray) leaves = leaves_of(source, step->now, step->region, use.now->outlines);
-        const FlMovingRegion moving = moving_of(source, step, &use, leaves);
-        rests = fl_motion_rests(&moving);
-    }
-    release(source, &use);
-    return rests;
-}

@@ -37,9 +37,6 @@ typedef struct FlRegionStep {
 bool fl_motion_source_get(FlMotionSource *source, const FlRegionStep *step, float *motion,
                           FlMotionShares *shares, GError **error);
 
-/** Returns: true if the region's outlines are unchanged, so that its motion is 0 everywhere. */
-bool fl_motion_source_rests(FlMotionSource *source, const FlRegionStep *step);
-
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlMotionSource, fl_motion_source_free)
 
 #endif

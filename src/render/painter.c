@@ -146,8 +146,7 @@ static bool make_sequence(FlPainter *painter, GError **error)
                        painter->wrap,
                        settings->hold,
                        source.flow != NULL,
-                       source.motion != NULL,
-                       source.uniform != NULL};
+                       source.motion != NULL};
     FlDigest made_of = {0};
     fl_digest_add(&made_of, how, sizeof how);
     fl_digest_add(&made_of, &params, sizeof params);

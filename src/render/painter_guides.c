@@ -163,34 +163,26 @@ static float *fluid_motion(FlPainter *painter, const FlRegionStep *step, GError 
     return g_steal_pointer(&motion);
 }
 
-/* The motion into a picture that has_past(): the drawing's own, and the fluid's. */
+/* The motion into a picture: the drawing's own, and the fluid's; unknown if none precedes it. */
 static bool known_motion(void *data, int frame, const FlOutlinePair *outlines, float *motion,
                          GError **error)
 {
     FlPainter *painter = data;
     FlRegionStep step = step_into(painter, frame, outlines);
+    const size_t values = 2 * fl_rect_pixels(fl_painter_guided(painter));
     g_autofree float *fluid = NULL;
+    for (size_t k = 0; k < values && !has_past(painter, frame); k++)
+        motion[k] = NAN;
+    if (!has_past(painter, frame))
+        return true;
     if (painter->fluid && !(fluid = fluid_motion(painter, &step, error)))
         return false;
     step.fluid = fluid, step.wetness = (float)painter->plan->settings.wetness;
     if (painter->motion)
         return fl_motion_source_get(painter->motion, &step, motion, NULL, error);
     if (fluid)
-        memcpy(motion, fluid, 2 * fl_rect_pixels(fl_painter_guided(painter)) * sizeof *motion);
+        memcpy(motion, fluid, values * sizeof *motion);
     return true;
-}
-
-static FlUniformMotion known_uniform(void *data, int frame, const FlOutlinePair *outlines)
-{
-    const FlPainter *painter = data;
-    const FlRegionStep step = step_into(painter, frame, outlines);
-    if (!has_past(painter, frame))
-        return FL_UNIFORM_UNKNOWN;
-    if (!painter->motion || !fl_motion_source_rests(painter->motion, &step))
-        return FL_UNIFORM_NOT;
-    if (painter->fluid)
-        fl_fluid_step(painter->fluid, outlines->now, outlines->now);
-    return FL_UNIFORM_REST;
 }
 
 static bool has_fluid(const FlPainter *painter)
@@ -252,7 +244,6 @@ FlGuideSource fl_painter_guide_source(FlPainter *painter)
                            .motion = known             ? known_motion
                                      : given && !masks ? painter_motion
                                                        : NULL,
-                           .uniform = known ? known_uniform : NULL,
                            .data = painter};
 }
 
