@@ -210,8 +210,6 @@ static void a_document_is_drawn_as_the_file_has_it(void)
         "/><rect id=\"a\" y=\"50\" " BOX "/>",
         "<rect id=\"a\" " BOX "/><use href=\"#a\" x=\"40\" fill=\"red\"/>",
         "<switch><rect systemLanguage=\"xx\" " BOX "/><circle r=\"50\"/></switch>",
-        "<filter id=\"f\"><feOffset in=\"BackgroundImage\" dx=\"9\"/></filter>"
-        "<rect " BOX " fill=\"red\"/><rect y=\"30\" " BOX " fill=\"#0f0\" filter=\"url(#f)\"/>",
     };
     g_autoptr(Scratch) folder = scratch_make();
     for (size_t i = 0; i < G_N_ELEMENTS(documents); i++) {

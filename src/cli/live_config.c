@@ -8,26 +8,13 @@
 
 enum { LONGEST_VALUE = 1000 };
 
-typedef struct Choice {
-    char *section, *key, *value;
-} Choice;
-
 struct FlLiveConfig {
     const FlArgs *args;
     char *base;         // the file with the options of the command line
-    GPtrArray *choices; // Choice
+    GPtrArray *choices; // "section\nkey\nvalue"
     GPtrArray *kept;    // the choices that are known to be good
     char *text;         // base with the choices
 };
-
-static void choice_free(void *data)
-{
-    Choice *choice = data;
-    g_free(choice->section);
-    g_free(choice->key);
-    g_free(choice->value);
-    g_free(choice);
-}
 
 static void set(char **text, const char *section, const char *key, const char *value)
 {
@@ -180,8 +167,8 @@ static void apply_choices(FlLiveConfig *config)
     g_free(config->text);
     config->text = g_strdup(config->base);
     for (guint k = 0; k < config->choices->len; k++) {
-        const Choice *choice = config->choices->pdata[k];
-        set(&config->text, choice->section, choice->key, choice->value);
+        g_auto(GStrv) choice = g_strsplit(config->choices->pdata[k], "\n", 3);
+        set(&config->text, choice[0], choice[1], choice[2]);
     }
 }
 
@@ -189,8 +176,8 @@ FlLiveConfig *fl_live_config_new(const FlArgs *args, GError **error)
 {
     g_autoptr(FlLiveConfig) config = g_new0(FlLiveConfig, 1);
     config->args = args;
-    config->choices = g_ptr_array_new_with_free_func(choice_free);
-    config->kept = g_ptr_array_new_with_free_func(choice_free);
+    config->choices = g_ptr_array_new_with_free_func(g_free);
+    config->kept = g_ptr_array_new_with_free_func(g_free);
     return fl_live_config_reload(config, error) ? g_steal_pointer(&config) : NULL;
 }
 
@@ -235,29 +222,22 @@ static bool is_section(const char *section)
            strcmp(section, "project") == 0 || strcmp(section, "defaults") == 0;
 }
 
-static Choice *copy_choice(const Choice *choice)
+static void *copy(const void *choice, void *data)
 {
-    Choice *copy = g_new(Choice, 1);
-    *copy = (Choice){g_strdup(choice->section), g_strdup(choice->key), g_strdup(choice->value)};
-    return copy;
-}
-
-static void copy_choices(GPtrArray *from, GPtrArray *to)
-{
-    g_ptr_array_set_size(to, 0);
-    for (guint k = 0; k < from->len; k++)
-        g_ptr_array_add(to, copy_choice(from->pdata[k]));
+    return g_strdup(choice);
 }
 
 void fl_live_config_keep(FlLiveConfig *config)
 {
-    copy_choices(config->choices, config->kept);
+    g_ptr_array_unref(config->kept);
+    config->kept = g_ptr_array_copy(config->choices, copy, NULL);
 }
 
 bool fl_live_config_revert(FlLiveConfig *config)
 {
     g_autofree char *before = g_strdup(config->text);
-    copy_choices(config->kept, config->choices);
+    g_ptr_array_unref(config->choices);
+    config->choices = g_ptr_array_copy(config->kept, copy, NULL);
     apply_choices(config);
     return strcmp(before, config->text) != 0;
 }
@@ -282,14 +262,11 @@ bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char
     }
     if (!check_value(option, value, error))
         return false;
-    for (guint k = config->choices->len; k > 0; k--) {
-        const Choice *choice = config->choices->pdata[k - 1];
-        if (strcmp(choice->section, section) == 0 && strcmp(choice->key, key) == 0)
-            g_ptr_array_remove_index(config->choices, k - 1);
-    }
-    Choice *choice = g_new(Choice, 1);
-    *choice = (Choice){g_strdup(section), g_strdup(key), g_strdup(value)};
-    g_ptr_array_add(config->choices, choice);
+    g_autofree char *name = g_strdup_printf("%s\n%s\n", section, key);
+    for (guint k = config->choices->len; k-- > 0;)
+        if (g_str_has_prefix(config->choices->pdata[k], name))
+            g_ptr_array_remove_index(config->choices, k);
+    g_ptr_array_add(config->choices, g_strconcat(name, value, NULL));
     apply_choices(config);
     return true;
 }

@@ -8,8 +8,10 @@
 #include "live_socket.h"
 #include "params/options.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 enum {
     TICK_MS = 200,
@@ -126,7 +128,8 @@ static void on_done(FlLiveJob *job, void *data)
 {
     Live *live = data;
     const bool current = job->generation == live->generation;
-    const bool failed = current && job->error && job->work != FL_LIVE_SAMPLE;
+    const bool failed = current && job->error && job->work != FL_LIVE_SAMPLE &&
+                        !g_error_matches(job->error, FL_ERROR, FL_ERROR_INTERRUPTED);
     g_autofree char *words = failed ? g_strdup(job->error->message) : NULL;
     const bool first = job->work == FL_LIVE_DRAFT;
     if (current && !failed && first)
@@ -442,12 +445,11 @@ static bool check_options(const FlArgs *args, GError **error)
 static char *new_secret(GError **error)
 {
     guint8 bytes[SECRET_BYTES];
-    g_autoptr(GFile) file = g_file_new_for_path("/dev/urandom");
-    g_autoptr(GFileInputStream) random = g_file_read(file, NULL, error);
-    gsize n = 0;
-    if (!random ||
-        !g_input_stream_read_all(G_INPUT_STREAM(random), bytes, sizeof bytes, &n, NULL, error))
+    if (getentropy(bytes, sizeof bytes) != 0) {
+        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "--serve: there are no random numbers: %s",
+                    g_strerror(errno));
         return NULL;
+    }
     GString *text = g_string_new("/");
     for (size_t k = 0; k < sizeof bytes; k++)
         g_string_append_printf(text, "%02x", bytes[k]);

@@ -9,7 +9,7 @@
 #include "render/motion_source.h"
 #include "render/reuse.h"
 
-enum { FL_KEPT_GUIDES = 6 }; // a page that shows every style goes through as many kinds
+enum { FL_KEPT_GUIDES = 8 }; // a page that shows every style goes through as many kinds
 
 /** The guides of a region for a whole film, made from all that has this digest. */
 typedef struct FlKeptGuides {

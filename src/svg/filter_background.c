@@ -28,19 +28,6 @@ static const char *background_input(const xmlNode *node)
     return NULL;
 }
 
-static bool reads_background(const xmlNode *node)
-{
-    bool found = background_input(node) != NULL;
-    for (const xmlNode *child = node->children; child && !found; child = child->next)
-        found = child->type == XML_ELEMENT_NODE && reads_background(child);
-    return found;
-}
-
-bool fl_document_reads_background(const xmlDoc *doc)
-{
-    return reads_background(xmlDocGetRootElement(doc));
-}
-
 /** Makes inputs that are the background EMPTY. Returns: whether there were any. */
 static bool replace_inputs(xmlNode *node)
 {
@@ -113,10 +100,8 @@ static void set_modes(xmlNode *node, GHashTable *modes)
         g_autofree char *filter = fl_property(node, "filter");
         const char *mode = filter ? g_hash_table_lookup(modes, filter) : NULL;
         if (mode) {
-            g_autoptr(xmlChar) style = fl_attribute(node, "style");
-            g_autofree char *all = g_strdup_printf("%s;filter:none;mix-blend-mode:%s",
-                                                   style ? (char *)style : "", mode);
-            fl_set_attribute(node, "style", all);
+            g_autofree char *style = g_strdup_printf("filter:none;mix-blend-mode:%s", mode);
+            fl_declare(node, style);
         }
         set_modes(node->children, modes);
     }

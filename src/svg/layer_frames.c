@@ -54,10 +54,8 @@ int fl_layer_frames_count(const xmlDoc *doc)
 /** Shows a layer that was hidden when the document was saved. */
 static void show(xmlNode *layer)
 {
-    g_autoptr(xmlChar) style = fl_attribute(layer, "style");
-    g_autofree char *shown = g_strconcat(style ? (const char *)style : "", ";display:inline", NULL);
     fl_set_attribute(layer, "display", NULL);
-    fl_set_attribute(layer, "style", shown);
+    fl_declare(layer, "display:inline");
 }
 
 static void drop_names(xmlNode *layer)

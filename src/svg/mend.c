@@ -187,8 +187,8 @@ static void note_line(void *data, char command, const double *v)
 static void mend_caps(xmlNode *path)
 {
     g_autoptr(xmlChar) d = fl_attribute(path, "d");
-    bool draws = !d;
-    if (d)
+    bool draws = !d || strpbrk((const char *)d, "LlHhVvCcSsQqTtAaZz"); // as nearly all have
+    if (!draws)
         fl_path_data_walk((const char *)d, note_line, &draws);
     if (!draws)
         fl_declare(path, "stroke-linecap:butt");

@@ -42,9 +42,6 @@ bool fl_document_mend(xmlDoc *doc, const char *path, GError **error);
  */
 void fl_document_drop_background(xmlDoc *doc, const char *path, int number, FlWarnings *warnings);
 
-/** Returns: true if fl_document_drop_background() would change the document. */
-bool fl_document_reads_background(const xmlDoc *doc);
-
 /* ---- the fonts of its text ------------------------------------------------------------------- */
 
 /**

@@ -63,14 +63,14 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
     fl_cascade(svg->doc, path, number, seconds, NULL, svg->files, warnings);
     if (!fl_document_mend(svg->doc, path, error))
         return NULL;
+    fl_document_drop_background(svg->doc, path, number, warnings);
     fl_lint(svg->doc, path, number, warnings);
     if (!fl_images_check(svg->doc, path, number, svg->files, warnings, error))
         return NULL;
     fl_fonts_add(svg->doc, svg->files);
     svg->n_nameless = fl_document_name_groups(svg->doc);
-    if (fl_document_is_rewritten(svg->doc) || fl_document_reads_background(svg->doc))
+    if (fl_document_is_rewritten(svg->doc))
         svg->original = fl_document_text(svg->doc, &svg->original_bytes);
-    fl_document_drop_background(svg->doc, path, number, warnings);
     if (!fl_document_normalise(svg->doc, options->whole, path, number, warnings, error))
         return NULL;
     svg->leaves = fl_leaves_new(svg->doc, options->whole);
