@@ -6,12 +6,8 @@
  *   distance_of  the distance smoothed along time and in space, if asked for [P21 §4.1]
  *   motion_of    the flow of one interval
  *   finish_frame the flow smoothed along time [F21 App. A], direction, extent; into the spill
- *
- * The outline of one frame, the motion of an earlier one and the finish of a yet earlier one run in
- * parallel, since one region is often most of a film; they do not need each other's results.
  */
 #include "base/alloc.h"
-#include "base/error.h"
 #include "guides/blur.h"
 #include "guides/direction.h"
 #include "guides/displacement.h"
@@ -490,65 +486,11 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     return true;
 }
 
-/** The last frame whose outline the motion of a frame needs. */
-static int last_outline(const Builder *b, int frame)
-{
-    return frame + 1 + b->dist_radius;
-}
-
-static bool prepare_outline(Builder *b, int frame, GError **error)
-{
-    FlOutline *outline;
-    return outline_of(b, frame, &outline, error);
-}
-
-static bool prepare_motion(Builder *b, int frame, GError **error)
-{
-    const FlGuideSource *source = &b->sequence->source;
-    const Motion *motion;
-    return source->flow || frame >= source->n_frames || motion_of(b, frame, &motion, error);
-}
-
-/** Prepares the outlines and motions that the first step needs, in order. */
-static bool prepare_first(Builder *b, GError **error)
-{
-    for (int frame = 0; frame <= last_outline(b, b->flow_radius); frame++)
-        if (!prepare_outline(b, frame, error))
-            return false;
-    for (int frame = 0; frame < b->flow_radius; frame++)
-        if (!prepare_motion(b, frame, error))
-            return false;
-    return true;
-}
-
-/** Finishes a frame, and prepares the last motion that the next frame needs and the last outline
- * that the motion after that one needs. */
-static bool step(Builder *b, int frame, GError **error)
-{
-    const int motion = frame + 1 + b->flow_radius, outline = last_outline(b, motion + 1);
-    GError *first = NULL, *of_frame = NULL, *of_motion = NULL, *of_outline = NULL;
-#pragma omp parallel sections
-    {
-#pragma omp section
-        (void)prepare_outline(b, outline, &of_outline);
-#pragma omp section
-        (void)prepare_motion(b, motion, &of_motion);
-#pragma omp section
-        (void)(frame >= 0 && finish_frame(b, frame, &of_frame));
-    }
-    fl_parallel_error_keep(&first, of_frame); // the earliest frame's
-    fl_parallel_error_keep(&first, of_motion);
-    fl_parallel_error_keep(&first, of_outline);
-    return fl_parallel_error_propagate(error, first);
-}
-
 bool fl_guide_sequence_build(FlGuideSequence *sequence, GError **error)
 {
     g_auto(Builder) builder = {0};
-    if (!builder_init(&builder, sequence, error) || !prepare_first(&builder, error))
-        return false;
-    for (int frame = -1; frame < sequence->source.n_frames; frame++)
-        if (!step(&builder, frame, error))
-            return false;
-    return true;
+    bool done = builder_init(&builder, sequence, error);
+    for (int frame = 0; frame < sequence->source.n_frames && done; frame++)
+        done = finish_frame(&builder, frame, error);
+    return done;
 }

@@ -1,5 +1,4 @@
 #include "base/alloc.h"
-#include "base/error.h"
 #include "guides/displacement.h"
 #include "guides/distance.h"
 #include "guides/extent.h"
@@ -117,26 +116,6 @@ static bool get_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane p
     return true;
 }
 
-/** The planes but shape and motion, side by side: each is a chain of differences. */
-static bool get_planes(const FlGuideSequence *sequence, int frame, FlRect part, FlGuides *guides,
-                       GError **error)
-{
-    GError *first = NULL, *of_flow = NULL, *of_extents = NULL;
-#pragma omp parallel sections
-    {
-#pragma omp section
-        (void)get_plane(sequence, frame, FL_GUIDE_PLANE_FLOW, part, guides->flow, &of_flow);
-#pragma omp section
-        (void)(get_plane(sequence, frame, FL_GUIDE_PLANE_PLUS, part, guides->ext_plus,
-                         &of_extents) &&
-               get_plane(sequence, frame, FL_GUIDE_PLANE_MINUS, part, guides->ext_minus,
-                         &of_extents));
-    }
-    fl_parallel_error_keep(&first, of_flow);
-    fl_parallel_error_keep(&first, of_extents);
-    return fl_parallel_error_propagate(error, first);
-}
-
 /** A plane of zeros; where it has not been written to, it goes on taking no memory. */
 static void clear_plane(const FlGuides *guides, void *plane, size_t bytes)
 {
@@ -192,7 +171,9 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
     if (area > 0) {
         g_autofree uint8_t *shape = fl_alloc_unset(2 * area, 1, "coverages and angles", error);
         if (!shape || !fl_guide_sequence_shape(sequence, frame, shape, error) ||
-            !get_planes(sequence, frame, part, guides, error))
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_FLOW, part, guides->flow, error) ||
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_PLUS, part, guides->ext_plus, error) ||
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_MINUS, part, guides->ext_minus, error))
             return false;
         fl_rect_copy(shape, record->box, guides->mask, part, 1);
         fl_rect_copy(shape + area, record->box, guides->angle, part, 1);
