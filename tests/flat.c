@@ -9,7 +9,7 @@ static void print_sequence(const char *folder)
 {
     GError *error = NULL;
     const char *const inputs[] = {folder, NULL};
-    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1};
+    const FlDrawingOptions options = {.frames = {inputs, 1}};
     const gint64 start = g_get_monotonic_time();
     g_autoptr(FlDrawing) drawing = fl_drawing_open(&options, NULL, &error);
     g_assert_no_error(error);

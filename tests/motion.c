@@ -94,7 +94,7 @@ static void show(const char *folder, const Options *o)
 {
     GError *error = NULL;
     const char *const inputs[] = {folder, NULL};
-    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1, .width = o->size};
+    const FlDrawingOptions options = {.frames = {inputs, 1}, .width = o->size};
     g_autoptr(FlDrawing) drawing = fl_drawing_open(&options, NULL, &error);
     g_assert_no_error(error);
     const FlRect page = {0, 0, fl_drawing_width(drawing), fl_drawing_height(drawing)};

@@ -14,7 +14,7 @@ static void add_frame(const char *folder, int t, const char *shapes)
 static FlDrawing *open_film(const char *folder)
 {
     const char *const inputs[] = {folder};
-    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1, .missing = FL_MISSING_ERROR};
+    const FlDrawingOptions options = {.frames = {inputs, 1, .missing = FL_MISSING_ERROR}};
     g_autoptr(GError) error = NULL;
     FlDrawing *drawing = fl_drawing_open(&options, NULL, &error);
     g_assert_no_error(error);

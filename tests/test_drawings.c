@@ -59,7 +59,7 @@ static void regions_over_each_other_are_the_drawing(const void *name)
     g_autoptr(GError) error = NULL;
     g_autofree char *folder = fixture(name, NULL);
     const char *const inputs[] = {folder, NULL};
-    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1};
+    const FlDrawingOptions options = {.frames = {inputs, 1}};
     g_autoptr(FlDrawing) drawing = fl_drawing_open(&options, NULL, &error);
     g_assert_no_error(error);
     const double psnr = flat_psnr(drawing, fl_drawing_frames(drawing) / 2);
@@ -74,7 +74,7 @@ static void gradients_go_over_into_skins(void)
     g_autoptr(GError) error = NULL;
     g_autofree char *folder = fixture("horse-gallop", NULL);
     const char *const inputs[] = {folder, NULL};
-    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1};
+    const FlDrawingOptions options = {.frames = {inputs, 1}};
     g_autoptr(FlDrawing) drawing = fl_drawing_open(&options, NULL, &error);
     int body = 0, behind = 0;
     g_assert_no_error(error);

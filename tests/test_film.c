@@ -15,8 +15,8 @@ static FlDrawing *open_film(const FlDrawingOptions *options, const char *input,
     FlDrawingOptions o = *options;
     const char *const inputs[] = {input};
     g_autoptr(GError) error = NULL;
-    o.inputs = inputs;
-    o.n_inputs = 1;
+    o.frames.inputs = inputs;
+    o.frames.n_inputs = 1;
     FlDrawing *drawing = fl_drawing_open(&o, warnings, &error);
     g_assert_no_error(error);
     return drawing;
@@ -233,7 +233,7 @@ static void a_group_that_fades_stays_taken_apart(void)
     const FlDrawingOptions options = {0};
     g_autoptr(FlDrawing) fading = open_film(&options, folder, NULL);
     assert_table(fading, "red-ff0000*3 blue-0000ff*3");
-    const FlDrawingOptions last = {.range = "3"};
+    const FlDrawingOptions last = {.frames.range = "3"};
     g_autoptr(FlDrawing) faint = open_film(&last, folder, NULL);
     assert_table(faint, "group*1");
 }
@@ -466,7 +466,7 @@ static void rules_choose_leaves_and_the_first_wins(void)
     const char *fixtures = g_getenv("FLUIDY_FIXTURES");
     g_autofree char *pattern = g_build_filename(fixtures ? fixtures : "fixtures", "animations",
                                                 "snowman-wave-layers", "%04d.svg", NULL);
-    const FlDrawingOptions options = {.range = "1-3", .rules = rules, .n_rules = 4};
+    const FlDrawingOptions options = {.frames.range = "1-3", .rules = rules, .n_rules = 4};
     g_autoptr(FlDrawing) drawing = open_film(&options, pattern, NULL);
     assert_table(drawing, "[snow]*3 rest*3 hat*3");
     g_assert_cmpint(find(drawing, "hat")->rule, ==, 1);
@@ -604,8 +604,8 @@ static void regions_merge_through_others_and_not_in_circles(void)
     const char *const red[] = {"#aa0000", NULL}, *const green[] = {"#00aa00", NULL},
                       *const blue[] = {"#0000aa", NULL};
     FlRule rules[] = {{.name = "a", .match_fill = red, .merge_with = "b"},
-                            {.name = "b", .match_fill = green, .merge_with = "c"},
-                            {.name = "c", .match_fill = blue}};
+                      {.name = "b", .match_fill = green, .merge_with = "c"},
+                      {.name = "c", .match_fill = blue}};
     const FlDrawingOptions options = {.rules = rules, .n_rules = 3};
     g_autoptr(FlDrawing) drawing = open_film(&options, path, NULL);
     assert_table(drawing, "c*1");
@@ -729,7 +729,7 @@ static void a_broken_frame_is_named(void)
     g_free(scratch_svg(folder, "1.svg", ""));
     g_autofree char *bad = scratch_write(folder, "2.svg", "<svg");
     const char *const inputs[] = {folder};
-    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1};
+    const FlDrawingOptions options = {.frames = {inputs, 1}};
     g_autoptr(GError) error = NULL;
     g_assert_null(fl_drawing_open(&options, NULL, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);

@@ -209,7 +209,7 @@ static FlDrawing *stack_of_three(const char *folder)
         g_free(scratch_svg(folder, name, shapes));
     }
     const char *const inputs[] = {folder};
-    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1};
+    const FlDrawingOptions options = {.frames = {inputs, 1}};
     FlDrawing *drawing = fl_drawing_open(&options, NULL, NULL);
     g_assert_nonnull(drawing);
     g_assert_cmpint(fl_drawing_regions(drawing), ==, 3);

@@ -21,7 +21,7 @@ static FlDrawing *drawing_of(const char *folder, const char *const *content, int
         g_free(scratch_write(folder, name, text));
     }
     const char *const inputs[] = {folder, NULL};
-    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1};
+    const FlDrawingOptions options = {.frames = {inputs, 1}};
     g_autoptr(GError) error = NULL;
     FlDrawing *drawing = fl_drawing_open(&options, NULL, &error);
     g_assert_no_error(error);

@@ -12,7 +12,7 @@ static FlDrawing *open_drawing(const char *folder, const char *content, FlWarnin
 {
     g_autofree char *path = scratch_svg(folder, "mixed.svg", content);
     const char *const inputs[] = {path};
-    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1};
+    const FlDrawingOptions options = {.frames = {inputs, 1}};
     g_autoptr(GError) error = NULL;
     FlDrawing *drawing = fl_drawing_open(&options, warnings, &error);
     g_assert_no_error(error);

@@ -55,7 +55,7 @@ static Sequence sequence_of(Draw *draw, int frames)
         g_free(scratch_write(s.folder, name, text->str));
     }
     const char *const inputs[] = {s.folder, NULL};
-    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1, .strokes = FL_STROKES_PAINT};
+    const FlDrawingOptions options = {.frames = {inputs, 1}, .strokes = FL_STROKES_PAINT};
     g_autoptr(GError) error = NULL;
     s.drawing = fl_drawing_open(&options, NULL, &error);
     g_assert_no_error(error);

@@ -219,20 +219,11 @@ static void the_facts_have_every_file_that_is_read(void)
                  NULL);
 }
 
-static void styles_are_named_by_the_options_of_their_type(void)
-{
-    g_assert_true(fl_option_names_style("style"));
-    g_assert_false(fl_option_names_style("tint"));
-    g_assert_false(fl_option_names_style("width"));
-}
-
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     strings = g_ptr_array_new_with_free_func(g_free);
     g_test_add_func("/options/names-and-letters-are-unique", names_and_letters_are_unique);
-    g_test_add_func("/options/styles-are-named-by-the-options-of-their-type",
-                    styles_are_named_by_the_options_of_their_type);
     g_test_add_func("/options/every-default-is-a-value", every_default_is_a_value);
     g_test_add_func("/options/a-value-out-of-range-is-refused", a_value_out_of_range_is_refused);
     g_test_add_func("/options/a-key-of-a-project-is-what-the-option-is",

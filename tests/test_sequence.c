@@ -16,7 +16,7 @@ static char *numbers(const char *folder, const char *input, const char *range, F
     const char *const inputs[] = {path};
     g_autoptr(GError) error = NULL;
     g_autoptr(FlSequence) s = fl_sequence_open(
-        inputs, 1, &(FlSequenceOptions){.range = range, .missing = missing}, NULL, &error);
+        &(FlSequenceOptions){inputs, 1, .range = range, .missing = missing}, NULL, &error);
     if (!s)
         return g_strdup(error->message);
     GString *text = g_string_new(NULL);
@@ -87,7 +87,7 @@ static void gaps_are_listed_held_or_skipped(void)
     g_autofree char *path = g_build_filename(folder, "f%d.svg", NULL);
     const char *const inputs[] = {path};
     g_autoptr(FlSequence) s =
-        fl_sequence_open(inputs, 1, &(FlSequenceOptions){.missing = FL_MISSING_HOLD}, NULL, NULL);
+        fl_sequence_open(&(FlSequenceOptions){inputs, 1, .missing = FL_MISSING_HOLD}, NULL, NULL);
     g_assert_cmpstr(s->frame[3].file, ==, s->frame[1].file);
     g_assert_cmpstr(s->frame[4].file, !=, s->frame[1].file);
 }
@@ -136,7 +136,7 @@ static void the_name_is_what_the_files_share(void)
     g_autofree char *path = g_build_filename(folder, "walk_cycle_%04d.svg", NULL);
     const char *const inputs[] = {path};
     g_autoptr(FlSequence) s =
-        fl_sequence_open(inputs, 1, &(FlSequenceOptions){.missing = FL_MISSING_ERROR}, NULL, NULL);
+        fl_sequence_open(&(FlSequenceOptions){inputs, 1, .missing = FL_MISSING_ERROR}, NULL, NULL);
     g_assert_cmpstr(s->name, ==, "walk_cycle");
 }
 

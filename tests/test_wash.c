@@ -31,8 +31,8 @@ static FlDrawing *open_film_by(FlRegionKey key, const char *folder, const char *
         g_assert_true(g_file_set_contents(path, page, -1, NULL));
     }
     const char *const inputs[] = {folder, NULL};
-    const FlDrawingOptions options = {
-        .inputs = inputs, .n_inputs = 1, .missing = FL_MISSING_ERROR, .key = key};
+    const FlDrawingOptions options = {.frames = {inputs, 1, .missing = FL_MISSING_ERROR},
+                                      .key = key};
     GError *error = NULL;
     FlDrawing *drawing = fl_drawing_open(&options, NULL, &error);
     g_assert_no_error(error);

@@ -101,17 +101,6 @@ static inline FlColumns fl_next_run(const uint8_t *row, int x, int end)
     return (FlColumns){x, last};
 }
 
-/** The first column from x on, or end, with another value than that of x, which is before end. */
-static inline int fl_end_of_same(const uint16_t *row, int x, int end)
-{
-    const uint16_t value[4] = {row[x], row[x], row[x], row[x]};
-    while (x + 4 <= end && memcmp(row + x, value, sizeof value) == 0)
-        x += 4;
-    while (x < end && row[x] == value[0])
-        x++;
-    return x;
-}
-
 static inline size_t fl_rect_pixels(FlRect rect)
 {
     return (size_t)rect.width * (size_t)rect.height;

@@ -14,20 +14,14 @@
 
 /** Options of reading a sequence; zero is the default of every field. */
 typedef struct FlDrawingOptions {
-    const char *const *inputs; // see fl_sequence_open()
-    int n_inputs;
-    const char *range; // NULL: all frames
-    FlMissing missing;
-    FlFramesFrom frames_from;
-    FlMoments moments;    // of FL_FRAMES_TIME
-    FlCanvas canvas;      // of drawings without a size
-    double dpi;           // 0: 96
-    bool apart;           // read and drawn by other processes, see worker/workers.h
-    FlSandboxing sandbox; // with apart
-    bool registered;      // move frames that begin at 0,0 back, see drawing/register_frames.h
-    int width, height;    // of the picture, px; 0: the drawing's; both: fitted and padded
-    double scale;         // px per px of the drawing; 0: 1; not together with width or height
-    int most_side;        // px that no side is longer than; 0: any
+    FlSequenceOptions frames; // its sandbox with apart
+    FlCanvas canvas;          // of drawings without a size
+    double dpi;               // 0: 96
+    bool apart;               // read and drawn by other processes, see worker/workers.h
+    bool registered;          // move frames that begin at 0,0 back, see drawing/register_frames.h
+    int width, height;        // of the picture, px; 0: the drawing's; both: fitted and padded
+    double scale;             // px per px of the drawing; 0: 1; not together with width or height
+    int most_side;            // px that no side is longer than; 0: any
     FlStrokes strokes;
     FlRegionKey key;
     /** Tells now and then, from the calling thread, how many frames were read; false interrupts.

@@ -26,7 +26,7 @@ static int mark_used(const FlDrawing *drawing, const FlRule *rules, int n, bool 
 static int mark_used_elsewhere(const FlDrawingOptions *options, bool *used)
 {
     FlDrawingOptions all = *options;
-    all.range = NULL, all.reading = NULL;
+    all.frames.range = NULL, all.reading = NULL;
     g_autoptr(FlDrawing) drawing = fl_drawing_open(&all, NULL, NULL);
     return drawing ? mark_used(drawing, options->rules, options->n_rules, used) : 0;
 }
@@ -37,7 +37,7 @@ static void warn_of_unused(const FlDrawing *drawing, const FlConfig *config,
 {
     g_autofree bool *used = g_new0(bool, MAX(config->n_rules, 1));
     int unused = mark_used(drawing, options->rules, config->n_rules, used), listed = 0;
-    if (unused > 0 && options->range)
+    if (unused > 0 && options->frames.range)
         unused = mark_used_elsewhere(options, used);
     g_autoptr(GPtrArray) names = g_ptr_array_new();
     for (int r = 0; r < fl_drawing_regions(drawing); r++)
@@ -146,8 +146,8 @@ FlDrawing *fl_drawing_open_for(const FlDrawingOptions *options, const FlConfig *
     offer_config(drawing, config->path, caller);
     warn_of_nothing(drawing, warnings);
     warn_of_unused(drawing, config, &wanted, warnings);
-    if (wanted.missing > FL_MISSING_ERROR &&
-        !fl_drawing_leave_out_bad(drawing, wanted.missing, warnings, error))
+    if (wanted.frames.missing > FL_MISSING_ERROR &&
+        !fl_drawing_leave_out_bad(drawing, wanted.frames.missing, warnings, error))
         return NULL;
     return report(warnings, caller, error) ? g_steal_pointer(&drawing) : NULL;
 }

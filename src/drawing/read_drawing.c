@@ -466,7 +466,8 @@ static bool read_frames(FlSurvey *survey, FlSequence *sequence, const FlDrawingO
         int n_failed = 0;
         for (int t = 0; t < sequence->n; t++)
             n_failed += survey->failed[t] != NULL;
-        if (good || n_failed == 0 || options->missing <= FL_MISSING_ERROR || round > MOST_ROUNDS) {
+        if (good || n_failed == 0 || options->frames.missing <= FL_MISSING_ERROR ||
+            round > MOST_ROUNDS) {
             fl_warnings_append(warnings, remarks);
             if (reason)
                 g_propagate_error(error, reason);
@@ -475,7 +476,7 @@ static bool read_frames(FlSurvey *survey, FlSequence *sequence, const FlDrawingO
         g_error_free(reason);
         if (!fl_may_leave_out(survey->failed, sequence->n, error))
             return false;
-        fl_sequence_leave_out(sequence, options->missing, survey->failed, warnings);
+        fl_sequence_leave_out(sequence, options->frames.missing, survey->failed, warnings);
         fl_survey_clear(survey);
     }
 }
@@ -484,15 +485,12 @@ FlDrawing *fl_drawing_open(const FlDrawingOptions *options, FlWarnings *warnings
 {
     if (!fl_rules_check(options->rules, options->n_rules, error))
         return NULL;
-    const FlSequenceOptions wanted = {options->range, options->missing, options->frames_from,
-                                      options->moments, options->sandbox};
-    g_autoptr(FlSequence) sequence =
-        fl_sequence_open(options->inputs, options->n_inputs, &wanted, warnings, error);
+    g_autoptr(FlSequence) sequence = fl_sequence_open(&options->frames, warnings, error);
     if (!sequence)
         return NULL;
     g_auto(GStrv) paths = fl_paths_of((const char *const *)sequence->found);
     g_autoptr(FlWorkers) workers =
-        fl_workers_new((const char *const *)paths, options->sandbox, options->apart, error);
+        fl_workers_new((const char *const *)paths, options->frames.sandbox, options->apart, error);
     if (!workers)
         return NULL;
     FlSurvey survey;

@@ -145,7 +145,7 @@ static double *places_of(FlSurvey *survey, FlCanvas *page, FlWarnings *warnings,
         if (!fl_survey_measure(survey, t, &(FlCanvas){0, 0, PAGE_PX, PAGE_PX}, true, &measures,
                                good ? error : NULL)) {
             good = false;
-            if (survey->options->missing > FL_MISSING_ERROR)
+            if (survey->options->frames.missing > FL_MISSING_ERROR)
                 continue; // all bad frames are left out together
             return NULL;
         }

@@ -504,9 +504,10 @@ static void set_moments(FlSequence *sequence, const FlInnerFrames *frames, const
         sequence->frame[i].seconds = moments->from + (sequence->frame[i].layer - 1) / moments->fps;
 }
 
-FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs,
-                             const FlSequenceOptions *options, FlWarnings *warnings, GError **error)
+FlSequence *fl_sequence_open(const FlSequenceOptions *options, FlWarnings *warnings, GError **error)
 {
+    const char *const *inputs = options->inputs;
+    const int n_inputs = options->n_inputs;
     g_assert(n_inputs >= 1);
     g_autoptr(GArray) found = found_new();
     if (n_inputs == 1) {

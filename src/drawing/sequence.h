@@ -30,6 +30,8 @@ typedef struct FlSequence {
 
 /** The selection of frames from the inputs. */
 typedef struct FlSequenceOptions {
+    const char *const *inputs; // see fl_sequence_open()
+    int n_inputs;
     const char *range; // "1001-1096", "1-96x2", "10-", "1,5,9" and lists of these; NULL: all
     FlMissing missing;
     FlFramesFrom from; // AUTO looks into a lone file
@@ -40,17 +42,16 @@ typedef struct FlSequenceOptions {
 /**
  * Finds the frames.
  *
- * inputs: one pattern (a_%04d.svg, a_####.svg), one glob, one folder, or n_inputs files. A pattern
- * is read here and never handed to printf; the folder is listed, so any first number is found.
- * Files come in the order of their numbers: 2.svg before 10.svg. A number is the last run of digits
- * of a name before ".svg" or ".svgz".
+ * The inputs are one pattern (a_%04d.svg, a_####.svg), one glob, one folder, or n_inputs files. A
+ * pattern is read here and never handed to printf; the folder is listed, so any first number is
+ * found. Files come in the order of their numbers: 2.svg before 10.svg. A number is the last run of
+ * digits of a name before ".svg" or ".svgz".
  *
  * The layers, pages or moments of one file are frames 1 … n; a worker counts them.
  *
  * Returns: NULL with FL_ERROR_USAGE (bad range or pattern) or FL_ERROR_INPUT (nothing found, gaps).
  */
-FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs,
-                             const FlSequenceOptions *options, FlWarnings *warnings,
+FlSequence *fl_sequence_open(const FlSequenceOptions *options, FlWarnings *warnings,
                              GError **error);
 
 /** The folders of the files, and files that are links; to be freed with g_strfreev(). */

@@ -86,7 +86,7 @@ static bool measure_first(FlSurvey *survey, FlPageMeasures *first, GError **erro
 {
     if (fl_survey_measure(survey, 0, &survey->frame[0].canvas, false, first, error))
         return true;
-    int t = survey->options->missing > FL_MISSING_ERROR ? 1 : survey->n_frames;
+    int t = survey->options->frames.missing > FL_MISSING_ERROR ? 1 : survey->n_frames;
     while (t < survey->n_frames &&
            !fl_survey_measure(survey, t, &survey->frame[t].canvas, false, first, NULL))
         t++;

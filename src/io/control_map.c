@@ -23,20 +23,10 @@ struct FlControlMap {
     int oldest;     // of these
 };
 
-static FlSeries *series_of_one(const char *path)
-{
-    FlSeries *series = g_new0(FlSeries, 1);
-    series->n = 1;
-    series->number = g_new0(int, 1);
-    series->path = g_new0(char *, 2);
-    series->path[0] = g_strdup(path);
-    return series;
-}
-
 FlControlMap *fl_control_map_open(const char *pattern, GError **error)
 {
     FlSeries *series = fl_input_is_pattern(pattern) ? fl_series_of_pattern(pattern, error)
-                                                    : series_of_one(pattern);
+                                                    : fl_series_of_file(pattern);
     if (!series)
         return NULL;
     if (!g_file_test(series->path[0], G_FILE_TEST_EXISTS)) {

@@ -146,6 +146,12 @@ FlSeries *fl_series_of_pattern(const char *text, GError **error)
     return NULL;
 }
 
+FlSeries *fl_series_of_file(const char *path)
+{
+    const Name name = {.path = (char *)path, .number = 1};
+    return make_series(&name, 1);
+}
+
 char *fl_series_path(const FlSeries *series, int number)
 {
     return g_strdup_printf("%s%0*d%s", series->prefix, series->digits, number, series->suffix);

@@ -29,6 +29,9 @@ GPtrArray *fl_series_in_folder(const char *folder, const char *const *endings, G
  */
 FlSeries *fl_series_of_pattern(const char *pattern, GError **error);
 
+/** A file alone, without a prefix; its number is 1. */
+FlSeries *fl_series_of_file(const char *path);
+
 /** False with FL_ERROR_STYLE set if a number is missing or occurs twice; it names the file. */
 bool fl_series_check(const FlSeries *series, GError **error);
 

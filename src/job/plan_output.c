@@ -7,25 +7,22 @@
 #include "params/options.h"
 #include <string.h>
 
-/* The moments of a drawing that plays. */
-static FlMoments moments_of(const FlRenderOptions *options)
+static FlSequenceOptions frames_of(const FlRenderOptions *options)
 {
     const double fps = options->fps > 0 ? options->fps : 24;
-    return (FlMoments){fps, MAX(options->from_s, 0), MAX(options->to_s, 0)};
+    return (FlSequenceOptions){
+        options->inputs,      (int)g_strv_length((char **)options->inputs),
+        options->frames,      options->missing,
+        options->frames_from, {fps, MAX(options->from_s, 0), MAX(options->to_s, 0)},
+        options->sandbox};
 }
 
 FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfig *config,
                                    const FlCaller *caller, GError **error)
 {
-    FlDrawingOptions wanted = {.inputs = options->inputs,
-                               .n_inputs = (int)g_strv_length((char **)options->inputs),
-                               .range = options->frames,
-                               .missing = options->missing,
-                               .frames_from = options->frames_from,
-                               .moments = moments_of(options),
+    FlDrawingOptions wanted = {.frames = frames_of(options),
                                .dpi = options->dpi,
                                .apart = true,
-                               .sandbox = options->sandbox,
                                .registered = options->registration == FL_REGISTRATION_ON,
                                .width = options->width,
                                .height = options->height,
@@ -40,10 +37,8 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
 
 FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **error)
 {
-    const FlSequenceOptions wanted = {options->frames, options->missing, options->frames_from,
-                                      moments_of(options), options->sandbox};
-    return fl_sequence_open(options->inputs, (int)g_strv_length((char **)options->inputs), &wanted,
-                            NULL, error);
+    const FlSequenceOptions wanted = frames_of(options);
+    return fl_sequence_open(&wanted, NULL, error);
 }
 
 static char *default_output(const FlPlan *plan)
@@ -201,7 +196,7 @@ bool fl_guard_pictures(const FlDrawing *drawing, const FlConfig *config,
     fl_inputs_add_drawing(inputs, drawing);
     list_files(inputs, config, options, drawing, NULL);
     for (size_t k = 0; k < options->n_settings; k++)
-        if (fl_option_names_style(options->settings[k].name))
+        if (g_str_equal(options->settings[k].name, "style"))
             fl_inputs_add_style(inputs, options->settings[k].value);
     for (int f = 0; f < fl_drawing_frames(drawing); f++) {
         char *path = fl_output_name(pattern, fl_drawing_number(drawing, f), NULL, NULL);

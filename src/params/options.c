@@ -87,12 +87,6 @@ bool fl_option_can_be_keyed(const FlOption *option)
     return option->type == FL_OPTION_DIAL || strcmp(option->name, "style") == 0;
 }
 
-bool fl_option_names_style(const char *name)
-{
-    const FlOption *option = fl_option_find(FL_SCOPE_REGION, name);
-    return option && option->type == FL_OPTION_STYLE;
-}
-
 const FlOption *fl_option_find_argument(const char *name)
 {
     for (int i = 0; i < fl_option_count(); i++) {

@@ -92,9 +92,6 @@ const FlOption *fl_option_at(int index);
  */
 const FlOption *fl_option_find(FlOptionScope scope, const char *name);
 
-/** Returns: true if the value of a region's option is a style's name or folder. */
-bool fl_option_names_style(const char *name);
-
 /** Returns: true if a region's option may be keyed in time. */
 bool fl_option_can_be_keyed(const FlOption *option);
 

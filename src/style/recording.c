@@ -41,15 +41,6 @@ static bool is_still(const char *path)
     return false;
 }
 
-static FlSeries *one_still(const char *path)
-{
-    FlSeries *series = g_new0(FlSeries, 1);
-    *series = (FlSeries){.n = 1, .number = g_new(int, 1), .path = g_new0(char *, 2)};
-    series->number[0] = 1;
-    series->path[0] = g_strdup(path);
-    return series;
-}
-
 static bool is_mask_series(const FlSeries *series)
 {
     g_autofree char *base = g_path_get_basename(series->path[0]);
@@ -132,7 +123,7 @@ FlRecording *fl_recording_open(const char *path, FlRecording **masks, GError **e
     if (g_file_test(path, G_FILE_TEST_IS_DIR))
         return open_any_folder(path, masks, error);
     if (g_file_test(path, G_FILE_TEST_EXISTS))
-        return new_source(path, is_still(path) ? one_still(path) : NULL);
+        return new_source(path, is_still(path) ? fl_series_of_file(path) : NULL);
     if (fl_input_is_pattern(path)) {
         FlSeries *series = fl_series_of_pattern(path, error);
         return series ? new_source(path, series) : NULL;

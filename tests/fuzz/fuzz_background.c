@@ -35,7 +35,7 @@ static void make_drawing(void)
         paths[f] = g_strdup_printf("%s/%d.svg", fuzz_folder(), f + 1);
         g_assert_true(g_file_set_contents(paths[f], text, -1, NULL));
     }
-    const FlDrawingOptions options = {.inputs = (const char *const *)paths, .n_inputs = FRAMES};
+    const FlDrawingOptions options = {.frames = {(const char *const *)paths, FRAMES}};
     drawing = fl_drawing_open(&options, NULL, NULL);
     g_assert_nonnull(drawing);
     atexit(free_drawing);

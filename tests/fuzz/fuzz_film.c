@@ -158,8 +158,7 @@ static void look_at(FlDrawing *drawing)
 static void read_film(const uint8_t *data, size_t size)
 {
     g_auto(GStrv) paths = write_frames(data, size);
-    FlDrawingOptions options = {.inputs = (const char *const *)paths,
-                                .n_inputs = (int)g_strv_length(paths),
+    FlDrawingOptions options = {.frames = {(const char *const *)paths, (int)g_strv_length(paths)},
                                 .width = SIDE,
                                 .height = SIDE};
     choose(data, size, &options);
