@@ -37,7 +37,8 @@ typedef struct FlFluidPart {
 struct FlFluid {
     FlFluidDials dials;
     int width, height;   // of the part, px
-    int px, left, top;   // of a cell; cells before the first pixel
+    int px, left, top;   // of a cell; cells before that of the first pixel
+    int within[2];       // px of that cell before this pixel
     int from[2], to[2];  // px beyond which there is no shape: the part, but for the page's edge
     int stride, rows, n; // cells
     float leap;

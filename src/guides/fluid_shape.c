@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#define CELLS 80    // along the larger side of the page, at least, and up to twice as many
+#define CELLS 120   // along the larger side of the page, at most
 #define FINEST_PX 2 // of a cell
 #define MARGIN 4    // cells around the part
 #define FAR 40      // the largest distance
@@ -13,16 +13,12 @@
 #define LEAP .05f       // of the page's larger side
 #define NONE (-1)
 
-/* Cells have a power of two px, so that they lie alike for other parts of the page, which painters
- * lay on a grid of such px. With a margin and a border. A side at the page's edge has no margin, so
- * that faces on the edge are open. */
+/* Cells lie on the page, so that they are the same for other parts of it. With a margin and a
+ * border. A side at the page's edge has no margin, so that faces on the edge are open. */
 void fl_fluid_lay_grid(FlFluid *f, FlRect part, FlRect page)
 {
     const int page_side = MAX(page.width, page.height);
-    int px = FINEST_PX;
-    while (2 * px * CELLS <= page_side)
-        px *= 2;
-    f->px = px;
+    const int px = f->px = MAX((page_side + CELLS - 1) / CELLS, FINEST_PX);
     const int part_at[2] = {part.x, part.y}, size[2] = {part.width, part.height};
     const int page_at[2] = {page.x, page.y}, page_size[2] = {page.width, page.height};
     int before[2], cells[2];
@@ -31,7 +27,8 @@ void fl_fluid_lay_grid(FlFluid *f, FlRect part, FlRect page)
         const bool ends = part_at[k] + size[k] >= page_at[k] + page_size[k];
         f->from[k] = starts ? -page_side : 0, f->to[k] = size[k] + (ends ? page_side : 0);
         before[k] = 1 + (starts ? 0 : MARGIN);
-        cells[k] = before[k] + (size[k] + px - 1) / px + (ends ? 0 : MARGIN) + 2;
+        f->within[k] = MAX(part_at[k] - page_at[k], 0) % px;
+        cells[k] = before[k] + (f->within[k] + size[k] + px - 1) / px + (ends ? 0 : MARGIN) + 2;
     }
     f->width = part.width, f->height = part.height;
     f->left = before[0], f->top = before[1];
@@ -56,7 +53,8 @@ void fl_fluid_lay_cells(FlFluid *f)
  * outside it is that of the middle. */
 static float mean_distance(const FlFluid *f, const FlOutline *outline, int c)
 {
-    const int x = ((int)f->column[c] - f->left) * f->px, y = ((int)f->line[c] - f->top) * f->px;
+    const int x = ((int)f->column[c] - f->left) * f->px - f->within[0];
+    const int y = ((int)f->line[c] - f->top) * f->px - f->within[1];
     const int l = CLAMP(x, 0, f->width - 1), r = CLAMP(x + f->px, l + 1, f->width);
     const int t = CLAMP(y, 0, f->height - 1), b = CLAMP(y + f->px, t + 1, f->height);
     const int away =

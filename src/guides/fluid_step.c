@@ -17,6 +17,7 @@
 #define RESTS .12f       // slower than this a contour rests
 #define BAND 5           // below the contour, in which buoyancy sets in
 #define CONFINEMENT .05f // of a swirl of 1
+#define FASTEST_IN 2.    // at which fluid comes in
 #define SLOWS .8f        // factor on the velocity of what rests
 #define STILL .01f       // a velocity that is none
 
@@ -279,10 +280,10 @@ static void let_in_growth(FlFluid *f)
         const FlFluidPart *part = fl_fluid_part(f, c);
         if (!part || part->area == HUGE_VAL)
             continue;
-        const bool emits = part->growth > 0 && part->emitters > .5;
-        const double share = emits ? (double)f->dials.emit : 0;
-        f->missing[c] += (1 - share) * part->growth * (double)fl_fluid_open_area(f, c) / part->area;
-        f->missing[c] += emits ? share * part->growth * emitter(f, c) / part->emitters : 0;
+        const double most = part->growth > 0 ? (double)f->dials.emit * part->growth : 0;
+        const double in = MIN(most, FASTEST_IN * part->emitters);
+        f->missing[c] += (part->growth - in) * (double)fl_fluid_open_area(f, c) / part->area;
+        f->missing[c] += in > 0 ? in * emitter(f, c) / part->emitters : 0;
     }
 }
 
@@ -484,16 +485,18 @@ static bool has_fluid(const FlFluid *f, int c)
 
 void fl_fluid_motion(const FlFluid *f, float *motion)
 {
+    const float px = (float)f->px;
     for (int y = 0; y < f->height; y++)
-        for (int x0 = 0; x0 < f->width; x0 += f->px) {
-            const int i = f->left + x0 / f->px, j = f->top + y / f->px;
+        for (int x0 = -f->within[0]; x0 < f->width; x0 += f->px) {
+            const int i = f->left + (x0 + f->within[0]) / f->px;
+            const int j = f->top + (y + f->within[1]) / f->px;
             const bool known = has_fluid(f, j * f->stride + i);
-            const float v = ((float)y + .5f) / (float)f->px - .5f + (float)f->top;
-            for (int x = x0; x < MIN(x0 + f->px, f->width); x++) {
-                const float u = ((float)x + .5f) / (float)f->px - .5f + (float)f->left;
+            const float v = ((float)(y + f->within[1]) + .5f) / px - .5f + (float)f->top;
+            for (int x = MAX(x0, 0); x < MIN(x0 + f->px, f->width); x++) {
+                const float u = ((float)(x + f->within[0]) + .5f) / px - .5f + (float)f->left;
                 float *out = motion + 2 * ((size_t)y * (size_t)f->width + (size_t)x);
                 for (int k = 0; k < 2; k++)
-                    out[k] = known ? (float)f->px * fl_fluid_sample(f, f->moved[k], u, v) : NAN;
+                    out[k] = known ? px * fl_fluid_sample(f, f->moved[k], u, v) : NAN;
             }
         }
 }
