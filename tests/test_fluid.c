@@ -1,5 +1,5 @@
 /* The fluid inside a moving outline, against flows that are known. */
-#include "guides/fluid.h"
+#include "guides/fluid_data.h"
 #include "params/region_settings.h"
 #include <math.h>
 #include <string.h>
@@ -138,6 +138,32 @@ static void test_growth(void)
                     top = motion[2 * (75 * SIDE + 100) + 1];
         g_assert_cmpfloat(top, <, -2);   // it goes with the outline
         g_assert_cmpfloat(foot, <, -.5); // and comes in at the foot
+    }
+}
+
+/* What leaves a cell is what its contour lets in and its share of the shape's gain, but for a
+ * hundredth of what was missing. */
+static void test_flux(void)
+{
+    g_autoptr(FlFluid) fluid = fluid_of("water");
+    const FlFluid *f = fluid;
+    for (int frame = 1; frame < 25; frame++) {
+        double off = 0, missing = 0, pushed = 0;
+        flow(fluid, rising, frame - 1, frame);
+        for (int c = 0; c < f->n; c++) {
+            const FlFluidPart *part = fl_fluid_part(f, c);
+            const int below = c + f->stride;
+            if (!part)
+                continue;
+            const double out = (double)(f->open_u[c + 1] * f->u[c + 1] - f->open_u[c] * f->u[c] +
+                                        f->open_v[below] * f->v[below] - f->open_v[c] * f->v[c]);
+            const double push = (double)(f->speed[c] * f->length[c]);
+            const double gain = part->growth * (double)fl_fluid_open_area(f, c) / part->area;
+            off += (out + push - gain) * (out + push - gain);
+            missing += f->missing[c] * f->missing[c], pushed += push;
+        }
+        g_assert_cmpfloat(pushed, >, 5); // the column is 20 cells wide
+        g_assert_cmpfloat(sqrt(off), <, .0101 * sqrt(missing));
     }
 }
 
@@ -293,6 +319,7 @@ int main(int argc, char **argv)
     g_test_add_func("/fluid/strain", test_strain);
     g_test_add_func("/fluid/held", test_held);
     g_test_add_func("/fluid/growth", test_growth);
+    g_test_add_func("/fluid/flux", test_flux);
     g_test_add_func("/fluid/rest", test_rest);
     g_test_add_func("/fluid/stop", test_stop);
     g_test_add_func("/fluid/any", test_any);
