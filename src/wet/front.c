@@ -89,8 +89,9 @@ static bool find_mark(const Front *front, const FlWetSheet *sheet, size_t p, flo
     const float run = fl_fibres_run(&sheet->fibres, (float)at.x / px, (float)at.y / px,
                                     (float)(dx / length), (float)(dy / length));
     const float fingers = style->fingers * fl_ease(1.5f * px, 7 * px, f);
-    const float finger = 2.8f * run * run; // a few are long, many short
-    const float reach = 1.25f * f * (1 - fingers + fingers * finger) - ahead + 2 * px;
+    const float finger = 3 * run * run;                 // a few are long, many short
+    const float soft = MAX(style->soft * f, 1.1f * px); // half of it lies beyond a hard end
+    const float reach = 1.25f * f * (1 - fingers + fingers * finger) - ahead + 2 * px + 0.5f * soft;
     const float over = front->dials->overrun * px * (0.4f + 0.7f * finger) *
                        MIN(1, point->half_width / (10 * px)) * fl_ease(1.5f * px, 9 * px, f) *
                        passing_by(front->shape, point);
@@ -99,7 +100,7 @@ static bool find_mark(const Front *front, const FlWetSheet *sheet, size_t p, flo
         THIN * (style->base + (1 - style->base) * fl_fall(MAX(ahead, 0) / (0.45f * f)));
     const float strength = fl_ease(0.5f * px, 2.5f * px, f) * front->strength[p] *
                            (1 - fl_ease(7 * px, 14 * px, depth));
-    mark->edge = CLAMP(MIN(reach / MAX(style->soft * f, 1.1f * px), path), -2, 3);
+    mark->edge = CLAMP(MIN(reach / soft, path), -2, 3);
     mark->density = strength * dense;
     mark->line = style->line * (1 - dense) / dense * fl_ease(0.3f, 2, f / px);
     memcpy(mark->ink, point->ink, sizeof mark->ink);
