@@ -315,7 +315,8 @@ static Digests digests_of(const FlRenderOptions *options)
 /* What a film alone depends on: the frames stay, and are what it would be made of. */
 static bool is_of_film(const FlOption *o)
 {
-    return strcmp(o->name, "fps") == 0 || strcmp(o->name, "format") == 0;
+    return strcmp(o->name, "fps") == 0 || strcmp(o->name, "format") == 0 ||
+           g_str_has_prefix(o->name, "audio");
 }
 
 /* Sets an option of a render or, for all regions, of a region. Returns: false if the command is

@@ -1,6 +1,7 @@
 #include "base/density.h"
 #include "base/rng.h"
 #include "config.h"
+#include "io/ffmpeg.h"
 #include "io/pattern.h"
 #include "io/png.h"
 #include "io/provenance.h"
@@ -13,6 +14,7 @@
 #include <signal.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <unistd.h>
 #if HAVE_EXR
 #include "io/cryptomatte.h"
 #include <OpenEXR/openexr.h>
@@ -381,6 +383,83 @@ static void sums_are_a_line_per_frame(void)
     g_assert_cmpint(strlen(lines[0]), ==, 64 + 3);
 }
 
+enum { RATE = FL_SOUND_RATE }; // samples a second
+
+/** A WAV file of one second without sound and one of a square wave, in one channel. */
+static char *write_sound(const Scratch *scratch)
+{
+    const uint32_t bytes = 2 * 2 * RATE, all = 36 + bytes, kind = 16, rate = RATE, flow = 2 * RATE;
+    const uint16_t words[] = {1, 1, 2, 16}; // PCM, channels, bytes a sample, bits
+    g_autoptr(GByteArray) wav = g_byte_array_new();
+    char *path = g_build_filename(scratch, "sound.wav", NULL);
+    g_byte_array_append(wav, (const guint8 *)"RIFF", 4);
+    g_byte_array_append(wav, (const guint8 *)&all, 4);
+    g_byte_array_append(wav, (const guint8 *)"WAVEfmt ", 8);
+    g_byte_array_append(wav, (const guint8 *)&kind, 4);
+    g_byte_array_append(wav, (const guint8 *)words, 4);
+    g_byte_array_append(wav, (const guint8 *)&rate, 4);
+    g_byte_array_append(wav, (const guint8 *)&flow, 4);
+    g_byte_array_append(wav, (const guint8 *)(words + 2), 4);
+    g_byte_array_append(wav, (const guint8 *)"data", 4);
+    g_byte_array_append(wav, (const guint8 *)&bytes, 4);
+    for (int k = 0; k < 2 * RATE; k++) {
+        const int16_t sample = k < RATE ? 0 : k / 50 % 2 ? 8000 : -8000;
+        g_byte_array_append(wav, (const guint8 *)&sample, 2);
+    }
+    scratch_put(path, (const char *)wav->data, wav->len);
+    return path;
+}
+
+/** The mean loudness of a part of the sound of a file, in one channel; *n: samples there are. */
+static double loudness(const char *path, double from_s, double seconds, int *n)
+{
+    g_autoptr(GError) error = NULL;
+    const int fd = fl_ffmpeg_sound(path, from_s, seconds, &error);
+    int16_t sample[2];
+    double sum = 0;
+    g_assert_no_error(error);
+    for (*n = 0; pread(fd, sample, sizeof sample, (off_t)*n * (off_t)sizeof sample) > 0; ++*n)
+        sum += abs(sample[0]);
+    close(fd);
+    return sum / MAX(*n, 1);
+}
+
+/** The film begins half a second before the sound is heard, and lasts one. */
+static void a_film_has_the_sound_that_it_is_given(void)
+{
+    if (lacks("ffmpeg"))
+        return;
+    g_autoptr(Scratch) scratch = scratch_make();
+    g_autofree char *sound = write_sound(scratch), *path = g_build_filename(scratch, "a.mkv", NULL);
+    g_autofree char *gif = g_build_filename(scratch, "a.gif", NULL);
+    g_autofree char *text = scratch_write(scratch, "text.wav", "no sound");
+    g_autoptr(GError) error = NULL;
+    FlSinkParams params = {.path = path, .width = W, .height = H, .fps = FRAMES, .opaque = true,
+                           .audio = sound, .audio_from = .5, .seconds = 1};
+    g_autoptr(FlSink) sink = fl_sink_open(&fl_sink_mkv, &params, &error);
+    uint8_t rgba[4 * W * H];
+    int n;
+    g_assert_no_error(error);
+    for (int f = 0; f < FRAMES; f++) {
+        fill(rgba, f);
+        fl_sink_frame(sink, &(FlSinkFrame){.number = f, .rgba = rgba}, &error);
+        g_assert_no_error(error);
+    }
+    g_assert_true(fl_sink_finish(sink, &error));
+    g_assert_cmpfloat(loudness(path, 0, .5, &n), <, 1);
+    g_assert_cmpint(n, ==, RATE / 2);
+    g_assert_cmpfloat(loudness(path, .5, 9, &n), >, 4000); // one channel is less in each of two
+    g_assert_cmpint(n, ==, RATE / 2);
+    params.path = gif;
+    g_assert_null(fl_sink_open(&fl_sink_gif, &params, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
+    g_clear_error(&error);
+    params.audio = text, params.path = path, params.overwrite = true;
+    g_assert_null(fl_sink_open(&fl_sink_mkv, &params, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
+    g_assert_nonnull(strstr(error->message, text));
+}
+
 #if HAVE_EXR || HAVE_ORA
 
 #define HAIR "CryptoRegion9" // a layer that is no matte
@@ -668,6 +747,8 @@ int main(int argc, char **argv)
                     the_death_of_ffmpeg_is_told_in_its_own_words);
     g_test_add_func("/formats/a-missing-ffmpeg-is-one-plain-message",
                     a_missing_ffmpeg_is_one_plain_message);
+    g_test_add_func("/formats/a-film-has-the-sound-that-it-is-given",
+                    a_film_has_the_sound_that_it_is_given);
     g_test_add_func("/formats/an-existing-film-is-kept", an_existing_film_is_kept);
     g_test_add_func("/formats/a-full-disk-is-an-error-and-leaves-no-litter",
                     a_full_disk_is_an_error_and_leaves_no_litter);

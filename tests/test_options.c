@@ -151,7 +151,8 @@ static void the_facts_have_what_follows_from_an_option(void)
     g_autoptr(FlFacts) before = facts_of_render(&plain);
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *o = fl_option_at(i);
-        const bool of_film = strcmp(o->name, "fps") == 0; // unless the drawing moves
+        const bool of_film = // unless the drawing moves
+            strcmp(o->name, "fps") == 0 || g_str_has_prefix(o->name, "audio");
         if (o->scope != FL_SCOPE_RENDER || o->bytes != FL_BYTES_RESULT || of_film)
             continue;
         FlRenderOptions options = plain;

@@ -193,6 +193,8 @@ typedef struct FlRenderOptions {
     double dpi;          /**< px per inch, for drawings sized in mm, cm, in, pt; 0: 96 */
     double gap;          /**< px of paper around a region that hides others, 0..32 */
     FlBlendSpace blend;  /**< in which layers are blended */
+    const char *audio;   /**< a file whose first sound films have; NULL: none */
+    double audio_from;   /**< seconds of it before the first frame */
     double fps; /**< frames per second of an output that is a film; 0: the config's, else 24 */
     FlOverwrite overwrite; /**< treatment of files that exist */
     /** Resume an interrupted render even with FL_OVERWRITE_YES, which otherwise starts anew. The

@@ -1,12 +1,18 @@
 #include "io/ffmpeg.h"
 
+#include "base/error.h"
+#include "base/file.h"
 #include "io/child_process.h"
 
+#include <errno.h>
+#include <glib/gstdio.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 struct FlFfmpeg {
     char *path;
+    const char *kind; // of what is read: "pictures" or "sound"
     FlChild *child;
 };
 
@@ -15,6 +21,20 @@ static char *file_url(const char *path)
 {
     g_autofree char *absolute = g_canonicalize_filename(path, NULL);
     return g_strconcat("file:", absolute, NULL);
+}
+
+static FlFfmpeg *start(const char *path, const char *kind, const char *const *args, GError **error)
+{
+    g_autoptr(FlFfmpeg) ffmpeg = g_new(FlFfmpeg, 1);
+    g_autoptr(GError) below = NULL;
+    *ffmpeg = (FlFfmpeg){.path = g_strdup(path), .kind = kind};
+    ffmpeg->child = fl_child_start_reader(args, path, &below);
+    if (!ffmpeg->child) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: cannot be read without the ffmpeg program: %s", path, below->message);
+        return NULL;
+    }
+    return g_steal_pointer(&ffmpeg);
 }
 
 FlFfmpeg *fl_ffmpeg_open(const char *path, int first, int last, int step, GError **error)
@@ -30,16 +50,7 @@ FlFfmpeg *fl_ffmpeg_open(const char *path, int first, int last, int step, GError
         "-vf",      select, "-fps_mode",  "passthrough", "-frames:v",
         count,      "-f",   "image2pipe", "-c:v",        "pam",
         "-pix_fmt", "rgba", "pipe:1",     NULL};
-    g_autoptr(FlFfmpeg) ffmpeg = g_new(FlFfmpeg, 1);
-    g_autoptr(GError) below = NULL;
-    *ffmpeg = (FlFfmpeg){.path = g_strdup(path)};
-    ffmpeg->child = fl_child_start_reader(args, path, &below);
-    if (!ffmpeg->child) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: cannot be read without the ffmpeg program: %s", path, below->message);
-        return NULL;
-    }
-    return g_steal_pointer(&ffmpeg);
+    return start(path, "pictures", args, error);
 }
 
 void fl_ffmpeg_close(FlFfmpeg *ffmpeg)
@@ -73,10 +84,10 @@ static bool end(const FlFfmpeg *ffmpeg, bool whole, GError **error)
     g_autofree char *words = fl_child_stderr_tail(ffmpeg->child);
     g_autofree char *cause = cause_of(words);
     if (strstr(words, "matches no streams"))
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: has no video stream", ffmpeg->path);
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: has no %s", ffmpeg->path, ffmpeg->kind);
     else
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be read as pictures: %s",
-                    ffmpeg->path,
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be read as %s: %s", ffmpeg->path,
+                    ffmpeg->kind,
                     well     ? "the last one is truncated"
                     : *cause ? cause
                              : below->message);
@@ -147,6 +158,85 @@ FlPicture *fl_ffmpeg_picture(const char *path, GError **error)
     else if (!picture && ffmpeg)
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: contains no picture", path);
     return picture;
+}
+
+/* Copies what the child writes, at most so many bytes. Returns: how many; -1 with an error. */
+static int64_t copy_sound(const FlFfmpeg *ffmpeg, int fd, int64_t most, GError **error)
+{
+    static const size_t block_bytes = 1 << 16;
+    g_autofree uint8_t *block = g_malloc(block_bytes);
+    int64_t all = 0;
+    size_t got = block_bytes;
+    while (got == block_bytes && all < most) {
+        if (!fl_child_read(ffmpeg->child, block, block_bytes, &got, error))
+            return -1;
+        const size_t wanted = (size_t)MIN((int64_t)got, most - all);
+        if (!fl_write_all(fd, block, wanted)) {
+            fl_fail(error, FL_ERROR_OUTPUT, "sound cannot be kept: %s", g_strerror(errno));
+            return -1;
+        }
+        all += (int64_t)wanted;
+    }
+    return all;
+}
+
+/* A temporary file that is gone when it is closed; -1 with FL_ERROR_OUTPUT. */
+static int open_temporary(GError **error)
+{
+    g_autofree char *name = NULL;
+    const int fd = g_file_open_tmp("fluidy-XXXXXX", &name, NULL);
+    if (fd >= 0)
+        g_unlink(name);
+    else
+        fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot be written to", g_get_tmp_dir());
+    return fd;
+}
+
+static FlFfmpeg *start_sound(const char *path, double from_s, double seconds, GError **error)
+{
+    g_autofree char *url = file_url(path);
+    char from[G_ASCII_DTOSTR_BUF_SIZE], length[G_ASCII_DTOSTR_BUF_SIZE];
+    g_ascii_formatd(from, sizeof from, "%.6f", from_s);
+    g_ascii_formatd(length, sizeof length, "%.6f", seconds);
+    const char *const args[] = {"ffmpeg",
+                                "-v",
+                                "error",
+                                "-nostdin",
+                                "-protocol_whitelist",
+                                "file",
+                                "-ss",
+                                from,
+                                "-i",
+                                url,
+                                "-map",
+                                "0:a:0",
+                                "-t",
+                                length,
+                                "-ac",
+                                G_STRINGIFY(FL_SOUND_CHANNELS),
+                                "-ar",
+                                G_STRINGIFY(FL_SOUND_RATE),
+                                "-f",
+                                "s16le",
+                                "pipe:1",
+                                NULL};
+    return start(path, "sound", args, error);
+}
+
+int fl_ffmpeg_sound(const char *path, double from_s, double seconds, GError **error)
+{
+    const int64_t most = (int64_t)(seconds * FL_SOUND_RATE + .5) * FL_SOUND_CHANNELS * 2;
+    g_autoptr(FlFfmpeg) ffmpeg = start_sound(path, from_s, seconds, error);
+    const int fd = ffmpeg ? open_temporary(error) : -1;
+    const int64_t bytes = fd >= 0 ? copy_sound(ffmpeg, fd, most, error) : -1;
+    if (bytes > 0)
+        return fd;
+    if (bytes == 0 && end(ffmpeg, true, error))
+        fl_fail(error, FL_ERROR_INPUT, "%s: has no sound %g seconds from its beginning", path,
+                from_s);
+    if (fd >= 0)
+        close(fd);
+    return -1;
 }
 
 double fl_ffmpeg_rate(const char *path)

@@ -26,6 +26,16 @@ void fl_ffmpeg_close(FlFfmpeg *ffmpeg);
 /** The first picture of a file, which is a still. Returns: NULL with FL_ERROR_INPUT set. */
 FlPicture *fl_ffmpeg_picture(const char *path, GError **error);
 
+#define FL_SOUND_RATE 48000
+#define FL_SOUND_CHANNELS 2
+
+/**
+ * Decodes the first sound of a file, so many seconds from one on, into a temporary file without a
+ * name: 16 bits, little end first, channels interleaved. Returns: its descriptor; -1 with
+ * FL_ERROR_INPUT, _OUTPUT or _INTERRUPTED set.
+ */
+int fl_ffmpeg_sound(const char *path, double from_s, double seconds, GError **error);
+
 /** Frames per second of a file's first video; 0 if ffprobe does not know. */
 double fl_ffmpeg_rate(const char *path);
 

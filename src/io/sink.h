@@ -47,15 +47,17 @@ typedef struct FlFrameTaker {
 
 /** The parameters of all frames of a sink. */
 typedef struct FlSinkParams {
-    const char *path;    // a pattern for picture formats, a file for films
-    FlDigest made_from;  // of all frames, or of the film; not known: files have no marks
-    int width, height;   // pixels, >= 1
-    double fps;          // films only, > 0
-    bool opaque;         // no frame has alpha below 255
-    bool overwrite;      // files of the same name may be replaced
-    bool fast;           // intermediate files: larger but written faster
-    FlPatience patience; // with ffmpeg
-    FlFrameTaker taker;  // of frames that stay in memory
+    const char *path;           // a pattern for picture formats, a file for films
+    FlDigest made_from;         // of all frames, or of the film; not known: files have no marks
+    int width, height;          // pixels, >= 1
+    double fps;                 // films only, > 0
+    const char *audio;          // of films: a file with sound; NULL: none
+    double audio_from, seconds; // where in it the film begins, and how long that is
+    bool opaque;                // no frame has alpha below 255
+    bool overwrite;             // files of the same name may be replaced
+    bool fast;                  // intermediate files: larger but written faster
+    FlPatience patience;        // with ffmpeg
+    FlFrameTaker taker;         // of frames that stay in memory
 } FlSinkParams;
 
 typedef struct FlSink FlSink;

@@ -1,6 +1,7 @@
 /* Films, through the ffmpeg program. */
 #include "base/error.h"
 #include "io/child_process.h"
+#include "io/ffmpeg.h"
 #include "io/sink.h"
 
 #include <errno.h>
@@ -14,6 +15,7 @@ typedef struct Codec {
     const char *muxer;
     const char *with_alpha;    // words between spaces; NULL: the format has no transparency
     const char *without_alpha; // the same for opaque frames
+    const char *sound;         // the same for sound; NULL: the format has none
     bool yuv;                  // stored as Rec. 709 luma and chroma; else as sRGB
 } Codec;
 
@@ -29,17 +31,24 @@ typedef struct Codec {
 static const Codec codecs[] = {
     {&fl_sink_mov, "mov",
      "-c:v prores_ks -profile:v 4444 -alpha_bits 16 -vendor apl0 -pix_fmt yuva444p10le",
-     "-c:v prores_ks -profile:v 4444 -vendor apl0 -pix_fmt yuv444p10le", true},
+     "-c:v prores_ks -profile:v 4444 -vendor apl0 -pix_fmt yuv444p10le", "-c:a pcm_s16le", true},
     {&fl_sink_webm, "webm",
      "-c:v libvpx-vp9 -crf 18 -b:v 0 -row-mt 1 -auto-alt-ref 0 -pix_fmt yuva420p",
-     "-c:v libvpx-vp9 -crf 18 -b:v 0 -row-mt 1 -pix_fmt yuv420p", true},
-    {&fl_sink_mkv, "matroska", FFV1 "bgra", FFV1 "bgr0", false},
+     "-c:v libvpx-vp9 -crf 18 -b:v 0 -row-mt 1 -pix_fmt yuv420p", "-c:a libopus -b:a 192k", true},
+    {&fl_sink_mkv, "matroska", FFV1 "bgra", FFV1 "bgr0", "-c:a flac", false},
     {&fl_sink_mp4, "mp4", NULL,
-     "-c:v libx264 -crf 16 -preset medium -movflags +faststart -pix_fmt yuv420p", true},
-    {&fl_sink_gif, "gif", PALETTE "-loop 0", PALETTE "-loop 0", false},
+     "-c:v libx264 -crf 16 -preset medium -movflags +faststart -pix_fmt yuv420p",
+     "-c:a aac -b:a 192k", true},
+    {&fl_sink_gif, "gif", PALETTE "-loop 0", PALETTE "-loop 0", NULL, false},
     {&fl_sink_apng, "apng", "-c:v apng -pred mixed -plays 0 -pix_fmt rgba",
-     "-c:v apng -pred mixed -plays 0 -pix_fmt rgb24", false},
+     "-c:v apng -pred mixed -plays 0 -pix_fmt rgb24", NULL, false},
 };
+
+/** A film that is being written. */
+typedef struct Video {
+    FlChild *child;
+    int sound; // a file; -1: none
+} Video;
 
 static const Codec *codec_of(const FlSinkFormat *format)
 {
@@ -68,7 +77,21 @@ static void add_input(GPtrArray *arguments, const FlSinkParams *params)
     g_ptr_array_add(arguments, g_strdup_printf("%dx%d", params->width, params->height));
     g_ptr_array_add(arguments, g_strdup("-framerate"));
     g_ptr_array_add(arguments, g_strdup(fps));
-    add_words(arguments, "-i pipe:0 -an");
+    add_words(arguments, "-i pipe:0");
+}
+
+/** ffmpeg opens our file without a name. */
+static void add_sound(GPtrArray *arguments, const Codec *codec, int sound)
+{
+    if (sound < 0) {
+        add_words(arguments, "-an");
+        return;
+    }
+    add_words(arguments, "-f s16le -ar " G_STRINGIFY(FL_SOUND_RATE) " -ac " G_STRINGIFY(
+                             FL_SOUND_CHANNELS) " -i");
+    g_ptr_array_add(arguments, g_strdup_printf("file:/proc/%d/fd/%d", (int)getpid(), sound));
+    add_words(arguments, "-map 0:v -map 1:a -flags:a +bitexact");
+    add_words(arguments, codec->sound);
 }
 
 /**
@@ -92,11 +115,12 @@ static void add_colour(GPtrArray *arguments, const Codec *codec)
  * ffmpeg gets a descriptor, not a name: a slow ffmpeg of a killed process would open by name what
  * the next process writes. The descriptor is a new one, since the lock must stay ours alone.
  */
-static FlChild *start_ffmpeg(const FlSink *sink, GError **error)
+static FlChild *start_ffmpeg(const FlSink *sink, int sound, GError **error)
 {
     const Codec *codec = codec_of(sink->format);
     g_autoptr(GPtrArray) arguments = g_ptr_array_new_with_free_func(g_free);
     add_input(arguments, &sink->params);
+    add_sound(arguments, codec, sound);
     add_words(arguments, sink->params.opaque ? codec->without_alpha : codec->with_alpha);
     add_colour(arguments, codec);
     if (sink->mark) {
@@ -133,18 +157,28 @@ static bool video_open(FlSink *sink, GError **error)
                        "%s: H.264 has no transparency; expected a background, or a .mov, .webm or "
                        ".mkv file",
                        params->path);
-    if (!fl_sink_begin(sink, error))
+    if (params->audio && !codec_of(sink->format)->sound)
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "%s: has no sound; expected a .mov, .webm, .mkv or .mp4 file", params->path);
+    const int sound = params->audio ? fl_ffmpeg_sound(params->audio, MAX(params->audio_from, 0),
+                                                      params->seconds, error)
+                                    : -1;
+    if ((params->audio && sound < 0) || !fl_sink_begin(sink, error)) {
+        if (sound >= 0)
+            close(sound);
         return false;
-    sink->state = start_ffmpeg(sink, error);
-    if (!sink->state)
+    }
+    Video *video = sink->state = g_new(Video, 1);
+    *video = (Video){start_ffmpeg(sink, sound, error), sound};
+    if (!video->child)
         g_prefix_error(error, "%s: ", params->path);
-    return sink->state != NULL;
+    return video->child != NULL;
 }
 
 static bool video_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
 {
     const size_t bytes = (size_t)sink->params.width * (size_t)sink->params.height * 4;
-    if (fl_child_write(sink->state, frame->rgba, bytes, error))
+    if (fl_child_write(((Video *)sink->state)->child, frame->rgba, bytes, error))
         return true;
     g_prefix_error(error, "%s: ", sink->params.path);
     return false;
@@ -152,7 +186,7 @@ static bool video_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
 
 static bool video_finish(FlSink *sink, GError **error)
 {
-    if (fl_child_finish(sink->state, error))
+    if (fl_child_finish(((Video *)sink->state)->child, error))
         return true;
     g_prefix_error(error, "%s: ", sink->params.path);
     return false;
@@ -160,7 +194,13 @@ static bool video_finish(FlSink *sink, GError **error)
 
 static void video_clear(FlSink *sink)
 {
-    fl_child_free(sink->state);
+    Video *video = sink->state;
+    if (!video)
+        return;
+    fl_child_free(video->child);
+    if (video->sound >= 0)
+        close(video->sound);
+    g_free(video);
 }
 
 #define FILM(word, end, text)                                                                      \

@@ -46,6 +46,11 @@ FlDigest fl_film_digest(const FlOutputs *out, FlDigest made_from)
     FlDigest digest = made_from;
     fl_digest_add_text(&digest, (out->movie ? out->movie_format : out->format)->name);
     fl_digest_add(&digest, &out->fps, sizeof out->fps);
+    if (out->audio) {
+        const FlDigest sound = fl_file_digest(out->audio);
+        fl_digest_add(&digest, &sound, sizeof sound);
+        fl_digest_add(&digest, &out->audio_from, sizeof out->audio_from);
+    }
     return digest;
 }
 

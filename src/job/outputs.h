@@ -22,6 +22,8 @@ typedef struct FlOutputs {
     FlOverwrite overwrite;
     bool merge, thickness;
     double fps;
+    const char *audio;
+    double audio_from;
 } FlOutputs;
 
 /** The frames, of so many, that a part of a merge composes. */

@@ -123,6 +123,9 @@ static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
             "no input: expected SVG files, a folder, or a pattern such as input_%%04d.svg");
     if (!check_options(&plan->options, error) || !fl_plan_find_output(plan, error))
         return false;
+    if (plan->options.audio && !plan->out.movie && !plan->out.format->film)
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "‘audio’ is the sound of a film; expected an output such as walk.mov");
     if ((plan->options.vectors || plan->options.thickness) &&
         strcmp(plan->out.format->name, "exr") != 0)
         return fl_fail(error, FL_ERROR_USAGE,
@@ -184,7 +187,9 @@ static void choose_written(FlPlan *plan, const FlRenderOptions *given)
                             .overwrite = o->overwrite,
                             .merge = o->merge,
                             .thickness = o->thickness,
-                            .fps = o->fps};
+                            .fps = o->fps,
+                            .audio = o->audio,
+                            .audio_from = o->audio_from};
 }
 
 /* Takes config, styles and store from the plan before, or makes them. */
@@ -315,7 +320,7 @@ FlPlan *fl_plan_earlier(const FlPlan *plan, int *first, GError **error)
     options.output = options.layers = options.paint = NULL, options.format = "null";
     options.merge = options.loop = options.strict = options.verify = false;
     options.dry_run = true, options.part = NULL;
-    options.vectors = options.thickness = false;
+    options.vectors = options.thickness = false, options.audio = NULL;
     options.progress = NULL, options.warning = options.note = NULL, options.reads = NULL;
     FlPlan *earlier = fl_plan_new(&options, error);
     if (earlier)

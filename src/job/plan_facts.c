@@ -273,7 +273,8 @@ static void add_requested(FlFacts *facts, const FlPlan *plan)
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *option = fl_option_at(i);
         if (option->scope != FL_SCOPE_RENDER || option->bytes == FL_BYTES_NEVER ||
-            g_str_equal(option->name, "format") || g_str_equal(option->name, "fps"))
+            g_str_equal(option->name, "format") || g_str_equal(option->name, "fps") ||
+            g_str_has_prefix(option->name, "audio"))
             continue;
         g_autofree char *value = fl_option_get(option, &plan->options);
         fl_facts_add(facts, option->name, value);

@@ -169,6 +169,7 @@ static void list_files(FlInputs *inputs, const FlConfig *config, const FlRenderO
                                     options->merge ? options->paint : NULL};
     for (guint k = 0; k < config->files->len; k++)
         fl_inputs_add_quietly(inputs, config->files->pdata[k]);
+    fl_inputs_add(inputs, options->audio);
     if (options->paper && fl_picture_named(options->paper)) // no word for a paper
         fl_inputs_add(inputs, options->paper);
     for (size_t k = 0; k < G_N_ELEMENTS(patterns); k++) {

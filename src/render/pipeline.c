@@ -429,6 +429,7 @@ bool fl_render_frames(const FlRenderOptions *options, FlTakeFrame take, void *ta
     without_files.cache = NULL; // frames are given once, so a failed render cannot be retried
     without_files.layers = without_files.report = without_files.stats = NULL;
     without_files.dump = without_files.provenance = NULL;
+    without_files.audio = NULL;
     without_files.vectors = without_files.thickness = false;
     if (!without_files.merge)
         without_files.paint = without_files.ebsynth = NULL;
