@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "svg/css_condition.h"
 #include "svg/css_scan.h"
-#include "svg/reference.h"
+#include "svg/document.h"
 #include <limits.h>
 #include <string.h>
 

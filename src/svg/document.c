@@ -3,8 +3,10 @@
 #include "base/file.h"
 #include "base/limits.h"
 #include <errno.h>
+#include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <libxml/parser.h>
+#include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
 
@@ -467,4 +469,56 @@ GHashTable *fl_document_ids(xmlDoc *doc)
     GHashTable *ids = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     collect_ids(xmlDocGetRootElement(doc), ids);
     return ids;
+}
+
+bool fl_is_set(const xmlNode *node, const char *property)
+{
+    g_autofree char *value = fl_property(node, property);
+    return value && strcmp(value, "none") != 0 && strcmp(value, "normal") != 0 && value[0];
+}
+
+static bool is_translucent(const xmlNode *node)
+{
+    g_autofree char *opacity = fl_property(node, "opacity");
+    const double value = opacity ? g_ascii_strtod(opacity, NULL) : 1;
+    return opacity && (strchr(opacity, '%') ? value / 100 : value) < 1;
+}
+
+static bool is_isolated(const xmlNode *node)
+{
+    g_autofree char *isolation = fl_property(node, "isolation");
+    return isolation && strcmp(isolation, "isolate") == 0;
+}
+
+bool fl_changes_as_one(const xmlNode *node)
+{
+    return fl_is_set(node, "filter") || fl_is_set(node, "mix-blend-mode") ||
+           fl_is_set(node, "mask") || is_translucent(node);
+}
+
+bool fl_has_effects(const xmlNode *node)
+{
+    return fl_changes_as_one(node) || is_isolated(node);
+}
+
+char *fl_reference_file(const char *from, const char *href, bool *is_there)
+{
+    g_autoptr(GFile) file = g_file_new_for_path(from);
+    g_autoptr(GFile) folder = g_file_get_parent(file);
+    g_autofree char *base = folder ? g_file_get_uri(folder) : g_strdup("file:///");
+    g_autofree char *slash = g_strconcat(base, "/", NULL);
+    g_autofree char *bare = g_strndup(href, strcspn(href, "#"));
+    g_autofree char *uri = g_uri_resolve_relative(slash, bare, G_URI_FLAGS_PARSE_RELAXED, NULL);
+    g_autofree char *path = uri ? g_filename_from_uri(uri, NULL, NULL) : NULL;
+    char *real = path ? realpath(path, NULL) : NULL;
+    *is_there = real != NULL;
+    return !path || real ? real : g_canonicalize_filename(path, NULL);
+}
+
+bool fl_reference_is_inside(const char *drawing, const char *file)
+{
+    g_autofree char *real = realpath(drawing, NULL);
+    g_autofree char *folder = real ? g_path_get_dirname(real) : NULL;
+    const size_t n = folder ? strlen(folder) : 0;
+    return n > 0 && strncmp(file, folder, n) == 0 && (file[n] == '/' || folder[n - 1] == '/');
 }

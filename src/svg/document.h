@@ -81,4 +81,22 @@ char *fl_property(const xmlNode *node, const char *name);
  */
 bool fl_declare(xmlNode *node, const char *declarations);
 
+/** Returns: true if a property is set, and not to none or normal. */
+bool fl_is_set(const xmlNode *node, const char *property);
+
+/** Returns: true if an element has a mask, a filter, a blend mode or an opacity below 1. */
+bool fl_changes_as_one(const xmlNode *node);
+
+/** Likewise, or if it is isolated, which keeps the blending in it from what lies below it. */
+bool fl_has_effects(const xmlNode *node);
+
+/**
+ * The real path, with links resolved, of the file that `href` in the file `from` names, even if it
+ * does not exist. *is_there: true if it exists. Returns: NULL if href names no file; to be freed.
+ */
+char *fl_reference_file(const char *from, const char *href, bool *is_there);
+
+/** Returns: true if a real path is in the folder of the drawing or in a folder below. */
+bool fl_reference_is_inside(const char *drawing, const char *file);
+
 #endif

@@ -4,7 +4,7 @@
 #include "base/limits.h"
 #include "svg/cascade.h"
 #include "svg/css_value.h"
-#include "svg/reference.h"
+#include "svg/document.h"
 #include "svg/webp.h"
 #include <gdk-pixbuf/gdk-pixbuf.h>
 #include <math.h>

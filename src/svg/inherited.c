@@ -1,6 +1,6 @@
 #include "svg/inherited.h"
 
-#include "svg/effects.h"
+#include "svg/document.h"
 #include "svg/transform.h"
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "svg/leaves.h"
 
-#include "svg/effects.h"
+#include "svg/document.h"
 #include "svg/labels.h"
 #include "svg/normalise.h"
 #include <string.h>

@@ -1,8 +1,8 @@
 #include "svg/passes.h"
 
 #include "svg/css_colour.h"
+#include "svg/document.h"
 #include "svg/path_data.h"
-#include "svg/reference.h"
 #include <string.h>
 
 typedef struct Lint {

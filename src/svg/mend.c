@@ -2,7 +2,7 @@
 
 #include "base/limits.h"
 #include "svg/css_scan.h"
-#include "svg/effects.h"
+#include "svg/document.h"
 #include "svg/normalise.h"
 #include "svg/path_data.h"
 #include <math.h>

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "svg/cascade.h"
 #include "svg/inner_frames.h"
-#include "svg/layer_frames.h"
 #include "svg/normalise.h"
 #include "svg/passes.h"
 #include "svg/svg_data.h"
@@ -162,4 +161,32 @@ xmlDoc *fl_svg_document(const FlSvg *svg)
 FlOutlines *fl_svg_outlines(const FlSvg *svg, FlPageSize page)
 {
     return fl_outlines_new(svg->doc, svg->leaves, svg->dpi, page);
+}
+
+/* Reads a number at *text, after `sign` unless that is 0, and moves *text behind the number. */
+static bool read_side(const char **text, char sign, double *value)
+{
+    if (sign && **text != sign)
+        return false;
+    *text += sign != 0;
+    char *end;
+    *value = g_ascii_strtod(*text, &end);
+    const bool read = end != *text && g_ascii_isdigit(**text);
+    *text = end;
+    return read;
+}
+
+bool fl_canvas_parse(const char *text, FlCanvas *canvas, GError **error)
+{
+    const char *at = text;
+    *canvas = (FlCanvas){0};
+    const bool size = read_side(&at, 0, &canvas->width) && read_side(&at, 'x', &canvas->height) &&
+                      canvas->width > 0 && canvas->height > 0;
+    const bool corner =
+        size &&
+        (*at == '\0' || (read_side(&at, '+', &canvas->x) && read_side(&at, '+', &canvas->y)));
+    if (corner && *at == '\0')
+        return true;
+    return fl_fail(error, FL_ERROR_USAGE, "canvas “%s”: expected WxH or WxH+X+Y, such as %s", text,
+                   "1000x800");
 }

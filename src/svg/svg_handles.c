@@ -1,4 +1,3 @@
-#include "svg/group_mask.h"
 #include "svg/svg_data.h"
 #include <string.h>
 
@@ -42,6 +41,81 @@ RsvgHandle *fl_svg_make_handle(const FlSvg *svg, const char *text, size_t bytes,
     return handle;
 }
 
+/* ---- masks of groups ------------------------------------------------------------------------- */
+
+/*
+ * librsvg applies a group's mask only if it renders that group or an outer one as a layer: it
+ * cannot draw a single leaf of the group with the mask. Leaves are therefore drawn without the
+ * masks of their groups, and each mask is drawn once.
+ */
+
+#define FLOOD_ID "fl-flood"
+#define PLAIN "opacity:1 !important;mix-blend-mode:normal !important;isolation:auto !important;"
+
+static xmlNode *group_of(GHashTable *ids, const FlGroupMask *mask)
+{
+    return g_hash_table_lookup(ids, mask->group);
+}
+
+/** The element around a node; NULL around the root. */
+static xmlNode *outwards(const xmlNode *node)
+{
+    return node->parent && node->parent->type == XML_ELEMENT_NODE ? node->parent : NULL;
+}
+
+/** Adds declarations to a node and its ancestors, up to the first that already has them. */
+static void declare_outwards(xmlNode *node, const char *declarations)
+{
+    while (node && fl_declare(node, declarations))
+        node = outwards(node);
+}
+
+/** Takes masks and clips off the groups of leaves->mask, and clips off those around them. */
+static void drop_masks(xmlDoc *doc, const FlLeaves *leaves)
+{
+    g_autoptr(GHashTable) ids = fl_document_ids(doc);
+    for (guint i = 0; i < leaves->mask->len; i++) {
+        xmlNode *node = group_of(ids, &g_array_index(leaves->mask, FlGroupMask, i));
+        fl_declare(node, "mask:none !important");
+        declare_outwards(node, "clip-path:none !important");
+    }
+}
+
+/** A filter that fills the page, whatever the shapes of what it is applied to. */
+static void add_flood(xmlDoc *doc)
+{
+    static const char *const attributes[][2] = {{"id", FLOOD_ID}, {"filterUnits", "userSpaceOnUse"},
+                                                {"x", "-1e6"},    {"y", "-1e6"},
+                                                {"width", "2e6"}, {"height", "2e6"}};
+    xmlNode *root = xmlDocGetRootElement(doc);
+    xmlNode *filter = xmlNewChild(root, root->ns, (const xmlChar *)"filter", NULL);
+    for (size_t i = 0; i < G_N_ELEMENTS(attributes); i++)
+        fl_set_attribute(filter, attributes[i][0], attributes[i][1]);
+    xmlNewChild(filter, root->ns, (const xmlChar *)"feFlood", NULL);
+}
+
+/**
+ * Changes the document so that each group of that depth, rendered as a layer, shows the coverage of
+ * its mask and of the clips on the group and around: the group is flooded, all other content is
+ * removed.
+ */
+static void flood_masks(xmlDoc *doc, const FlLeaves *leaves, int depth)
+{
+    g_autoptr(GHashTable) ids = fl_document_ids(doc);
+    add_flood(doc);
+    for (guint i = 0; i < leaves->mask->len; i++) {
+        const FlGroupMask *mask = &g_array_index(leaves->mask, FlGroupMask, i);
+        if (mask->depth != depth)
+            continue;
+        xmlNode *node = group_of(ids, mask);
+        // the hidden content still determines the box; librsvg ignores !important for filters
+        fl_declare(node, PLAIN "visibility:hidden !important;filter:url(#" FLOOD_ID ")");
+        declare_outwards(outwards(node), PLAIN "mask:none !important;filter:none !important");
+    }
+}
+
+/* ---- variants of the document ---------------------------------------------------------------- */
+
 /** kind: 0, 1 without masks, 2 masks alone, of a depth in place of a part. */
 static gpointer variant_key(int part, int kind)
 {
@@ -79,7 +153,7 @@ RsvgHandle *fl_svg_handle(FlSvg *svg, FlPart part, bool bare, GError **error)
     g_autoptr(xmlDoc) copy = xmlCopyDoc(svg->doc, 1);
     keep_part(copy, svg->leaves, part);
     if (bare)
-        fl_group_masks_drop(copy, svg->leaves);
+        drop_masks(copy, svg->leaves);
     return add_variant(svg, key, copy, error);
 }
 
@@ -90,6 +164,6 @@ RsvgHandle *fl_svg_mask_handle(FlSvg *svg, int depth, GError **error)
     if (handle)
         return handle;
     g_autoptr(xmlDoc) copy = xmlCopyDoc(svg->doc, 1);
-    fl_group_masks_flood(copy, svg->leaves, depth);
+    flood_masks(copy, svg->leaves, depth);
     return add_variant(svg, key, copy, error);
 }

@@ -1,10 +1,9 @@
 #include "svg/cascade.h"
 #include "svg/css_colour.h"
 #include "svg/css_scan.h"
-#include "svg/effects.h"
+#include "svg/document.h"
 #include "svg/inherited.h"
 #include "svg/normalise.h"
-#include "svg/reference.h"
 #include "svg/svg_data.h"
 #include "svg/svg_frame.h"
 #include <math.h>
