@@ -74,9 +74,10 @@ static bool set_options(FlLiveFilm *film, GError **error)
 /* ---- calls of the film, in its thread ---------------------------------------------------------
  */
 
-/* A line for the main thread. */
+/* A line for the main thread, or a job that has ended. */
 typedef struct Line {
     FlLiveFilm *film;
+    FlLiveJob *job;                             // NULL: it is a line
     void (*take)(const char *text, void *data); // NULL: it is progress
     char *text;
     int done, total;
@@ -86,7 +87,9 @@ static gboolean say(void *data)
 {
     g_autofree Line *line = data;
     const FlLiveCalls *calls = &line->film->calls;
-    if (line->take)
+    if (line->job)
+        calls->done(line->job, calls->data);
+    else if (line->take)
         line->take(line->text, calls->data);
     else
         calls->progress(line->text, line->done, line->total, calls->data);
@@ -94,12 +97,9 @@ static gboolean say(void *data)
     return G_SOURCE_REMOVE;
 }
 
-static void send(FlLiveFilm *film, void (*take)(const char *, void *), const char *text, int done,
-                 int total)
+static void send(const Line *line)
 {
-    Line *line = g_new(Line, 1);
-    *line = (Line){film, take, g_strdup(text), done, total};
-    g_idle_add_full(G_PRIORITY_DEFAULT, say, line, NULL);
+    g_idle_add_full(G_PRIORITY_DEFAULT, say, g_memdup2(line, sizeof *line), NULL);
 }
 
 static bool was_stopped(void *data)
@@ -115,7 +115,7 @@ static bool on_progress(const FlProgress *progress, void *data)
     const bool known = film->job->work == FL_LIVE_DRAFT && strcmp(progress->stage, "paint") != 0;
     if (known && now - film->told > (gint64)TELL_MS * 1000) {
         film->told = now;
-        send(film, NULL, progress->stage, progress->done, progress->total);
+        send(&(Line){film, NULL, NULL, g_strdup(progress->stage), progress->done, progress->total});
     }
     return !was_stopped(film);
 }
@@ -124,13 +124,13 @@ static void on_warning(const char *message, void *data)
 {
     FlLiveFilm *film = data;
     if (film->job->work != FL_LIVE_SAMPLE) // of a style that was not chosen
-        send(film, film->calls.warning, message, 0, 0);
+        send(&(Line){film, NULL, film->calls.warning, g_strdup(message)});
 }
 
 static void on_reads(const char *path, void *data)
 {
     FlLiveFilm *film = data;
-    send(film, film->calls.reads, path, 0, 0);
+    send(&(Line){film, NULL, film->calls.reads, g_strdup(path)});
 }
 
 /* ---- a job ------------------------------------------------------------------------------------
@@ -282,18 +282,6 @@ static bool do_job(FlLiveFilm *film, GError **error)
 /* ---- the thread -------------------------------------------------------------------------------
  */
 
-typedef struct Finished {
-    FlLiveFilm *film;
-    FlLiveJob *job;
-} Finished;
-
-static gboolean give_back(void *data)
-{
-    const Finished *finished = data;
-    finished->film->calls.done(finished->job, finished->film->calls.data);
-    return G_SOURCE_REMOVE;
-}
-
 static void *run(void *data)
 {
     FlLiveFilm *film = data;
@@ -309,9 +297,7 @@ static void *run(void *data)
             job->work == FL_LIVE_DRAFT && film->film && fl_film_stats(film->film)->n_read != read;
         if (!done && !job->error)
             g_set_error(&job->error, FL_ERROR, FL_ERROR_NO_MEMORY, "there is not enough memory");
-        Finished *finished = g_new(Finished, 1);
-        *finished = (Finished){film, job};
-        g_idle_add_full(G_PRIORITY_DEFAULT, give_back, finished, g_free);
+        send(&(Line){film, job});
     }
     g_clear_pointer(&film->film, fl_film_close);
     return NULL;

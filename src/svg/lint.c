@@ -172,14 +172,15 @@ static bool is_list(const xmlNode *node, const char *name)
 /** Warns of text that librsvg cannot lay out. */
 static void check_text(const Lint *lint, const xmlNode *node)
 {
-    g_autoptr(xmlChar) length = fl_attribute(node, "textLength");
-    const bool placed = is_list(node, "x") || is_list(node, "y") || is_list(node, "dx") ||
-                        is_list(node, "dy") || xmlHasProp((xmlNode *)node, (xmlChar *)"rotate");
-    if (placed && (fl_is(node, "text") || fl_is(node, "tspan")))
-        warn(lint, node, "places and turns of single letters are left out");
-    if (fl_is(node, "textPath"))
+    const bool on_path = fl_is(node, "textPath");
+    if (!on_path && !fl_is(node, "text") && !fl_is(node, "tspan"))
+        return;
+    if (on_path)
         warn(lint, node, "text on a path is left out");
-    if (length)
+    else if (is_list(node, "x") || is_list(node, "y") || is_list(node, "dx") ||
+             is_list(node, "dy") || xmlHasProp((xmlNode *)node, (xmlChar *)"rotate"))
+        warn(lint, node, "places and turns of single letters are left out");
+    if (xmlHasProp((xmlNode *)node, (xmlChar *)"textLength"))
         warn(lint, node, "textLength is left out: the text has its own width");
 }
 

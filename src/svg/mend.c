@@ -263,7 +263,7 @@ static void mend_words(xmlNode *node)
         if (text && g_ascii_isalpha(*text)) // "center", for which librsvg drops all attributes
             fl_set_attribute(node, places[i], NULL);
     }
-    g_autofree char *overflow = fl_property(node, "overflow");
+    g_autofree char *overflow = fl_is(node, "symbol") ? fl_property(node, "overflow") : NULL;
     if (fl_is(node, "symbol") && !overflow)
         fl_set_attribute(node, "overflow", "hidden");   // a browser's own style sheet says so
     if (fl_is(node, "mask") && fl_is_set(node, "mask")) // which no browser applies
