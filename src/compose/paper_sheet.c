@@ -98,7 +98,7 @@ static float light_at(const Surface *surface, const float *height)
     const float half = .5f * surface->place.scale;
     const int row = surface->box.width;
     const float dx = (height[1] - height[-1]) * half, dy = (height[row] - height[-row]) * half;
-    const float slope = (.4f * dx + .92f * dy) / surface->place.grain->slope_dev;
+    const float slope = (.5f * dx + .87f * dy) / surface->place.grain->slope_dev;
     const float light = .6f * slope + .5f * height[0];
     return light * (light < 0 ? 1.2f : .85f);
 }
@@ -115,13 +115,12 @@ static void fill_pixel(const Surface *surface, int x, int y, uint16_t factor[4],
         (size_t)(y + surface->margin) * (size_t)surface->box.width + (size_t)(x + surface->margin);
     const float fibre = surface->fibres[at], height = surface->height[at];
     const float cloud = slow_at(surface, surface->cloud, x, y);
-    const float rough = fl_clamp(1 + .8f * cloud, .5f, 1.6f); // felts press unevenly
-    const float light = rough * (light_at(surface, surface->height + at) + .11f) / .82f;
+    const float light = (light_at(surface, surface->height + at) + .11f) / .82f;
     const float fleck = grain->flecks > 0 ? fl_paper_fleck(&surface->place, (float)x, (float)y) : 0;
     const float warm = .5f * slow_at(surface, surface->warmth, x, y) + .25f * fibre;
     const float share = grain->relief * light + grain->cloud * cloud + .5f * grain->streak * fibre -
                         grain->flecks * fleck;
-    const float fine = rough * (height - surface->smooth[at]) / grain->fine_dev;
+    const float fine = (height - surface->smooth[at]) / grain->fine_dev;
     factor[0] = factor_of(surface->relief * share);
     factor[1] = factor_of(surface->relief * (share - .3f * grain->warm * warm));
     factor[2] = factor_of(surface->relief * (share - 1.6f * grain->warm * warm));

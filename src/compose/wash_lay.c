@@ -23,6 +23,18 @@ typedef struct Brush {
     uint16_t factor[TONES];
 } Brush;
 
+static void fill_hairs(const FlWash *wash, float hair[HAIRS])
+{
+    float x[FL_NOISE_ROW], y[FL_NOISE_ROW] = {0};
+    for (int k = 0; k < HAIRS; k += FL_NOISE_ROW) {
+        for (int i = 0; i < FL_NOISE_ROW; i++)
+            x[i] = (float)(k + i) * .125f, y[i] = .5f;
+        fl_noise_octaves_row(wash->key, x, y, FL_NOISE_ROW, 2, .8f, hair + k);
+    }
+    for (int k = 0; k < HAIRS; k++)
+        hair[k] = fl_clamp(.5f + .8f * hair[k], 0, 1);
+}
+
 static void brush_init(Brush *brush, const FlWash *wash, float white)
 {
     FlRng rng = {fl_key(wash->key, 1)};
@@ -30,10 +42,7 @@ static void brush_init(Brush *brush, const FlWash *wash, float white)
     for (int k = 0; k < LOADS; k++)
         brush->load[k] = 2 * fl_rng_float(&rng) - 1;
     brush->load[LOADS] = brush->load[0];
-    for (int k = 0; k < HAIRS; k++) {
-        const float even = fl_noise_octaves(brush->wash->key, (float)k * .125f, .5f, 2, .8f);
-        brush->hair[k] = fl_clamp(.5f + .8f * even, 0, 1);
-    }
+    fill_hairs(wash, brush->hair);
     for (int i = 0; i < TONES; i++) {
         const float more = 1.442695f * ((float)i / TONE_ONE + TONE_LEAST);
         brush->factor[i] = fl_density_level((int32_t)lrintf((2 - more) * FL_DENSITY_ONE));
@@ -49,19 +58,37 @@ static inline float hair_at(const Brush *brush, float px)
     return brush->hair[(int)floorf(2 * px) & (HAIRS - 1)];
 }
 
-/* Water carries paint to where it stops: a line, sharp towards what it flooded, from which teeth of
- * uneven length run on the way that the water went. */
+/* Water carries paint to where it stops: a line, sharp towards what it flooded. Where it is strong,
+ * teeth of uneven length run from it on the way that the water went. */
 static inline float front_at(const Brush *brush, const Slow slow)
 {
     const float away = slow[FL_WASH_FRONT], strength = slow[FL_WASH_FRONTS];
-    if (strength <= 0 || away < -12 || away > 90)
+    if (strength <= 0 || away < -12 || away > 60)
         return 0;
     const float hair = hair_at(brush, slow[FL_WASH_ALONG]);
     const float past = away + 2.5f * hair - 1;
     if (past < 0)
         return strength * fl_decay(-past * .7f);
-    return strength *
-           (.65f * fl_smooth(1 - past / (5 + 30 * hair * hair)) + .35f * fl_decay(past * .05f));
+    const float tooth = 3 + 26 * hair * hair * fl_smooth(3 * strength - 2);
+    return strength * (.5f * fl_smooth(1 - past / tooth) + .5f * fl_decay(past * .08f));
+}
+
+/* Bristles of a dry brush leave pale streaks here and there. */
+static inline float streak_at(const Brush *brush, const Slow slow)
+{
+    const float dry = slow[FL_WASH_DRY] - .38f;
+    const float hair = hair_at(brush, 1.7f * slow[FL_WASH_PASS] * brush->wash->brush_px);
+    return dry > 0 && hair > .64f ? fl_smooth(3 * dry) * (hair - .64f) : 0;
+}
+
+/* From -.5 on the side that water flooded to .5 beyond its front. */
+static inline float side_at(const Slow slow)
+{
+    const float away = slow[FL_WASH_FRONT];
+    if (fabsf(away) > 40)
+        return away > 0 ? .5f : -.5f;
+    const float lost_px = 2 + 78 * fl_clamp(1 - slow[FL_WASH_FRONTS], 0, 1);
+    return fl_smooth(.5f + away / lost_px) - .5f;
 }
 
 /* The ln of the factor on the amount by a wash of strength 1, and the balance of the pigments, at a
@@ -72,19 +99,13 @@ static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
     const FlWashStyle *style = &brush->wash->style;
     const float pass = floorf(slow[FL_WASH_PASS]), part = slow[FL_WASH_PASS] - pass;
     const int k = (int)pass & (LOADS - 1);
-    const float crisp = fl_smooth((slow[FL_WASH_DRY] + .05f) / .3f);
-    const float dry = fl_smooth((slow[FL_WASH_DRY] - .35f) / .4f);
-    const float width = .5f - .455f * crisp;
-    const float next = fl_smooth((part - 1 + width) / width);
-    const float bristle =
-        dry * (hair_at(brush, 1.7f * slow[FL_WASH_PASS] * brush->wash->brush_px) - .5f);
-    const float load = brush->load[k] + (brush->load[k + 1] - brush->load[k]) * next - bristle;
-    const float front = front_at(brush, slow),
-                lost_px = 3 + 60 * fl_clamp(1 - slow[FL_WASH_FRONTS], 0, 1);
-    const float wet = slow[FL_WASH_LINES] * (fl_smooth(.5f + slow[FL_WASH_FRONT] / lost_px) - .5f);
-    *hue = slow[FL_WASH_HUE] + slow[FL_WASH_LINES] * .25f * load + .3f * front;
-    return slow[FL_WASH_TONE] + .25f * style->passes * slow[FL_WASH_LINES] * load + .5f * front +
-           .22f * MAX(style->tide, style->blooms) * wet;
+    const float width = .5f - .47f * fl_smooth((slow[FL_WASH_DRY] + .15f) / .3f);
+    const float next = part > 1 - width ? fl_smooth((part - 1 + width) / width) : 0;
+    const float load = brush->load[k] + (brush->load[k + 1] - brush->load[k]) * next;
+    const float lines = slow[FL_WASH_LINES], front = front_at(brush, slow);
+    *hue = slow[FL_WASH_HUE] + .4f * lines * load + .3f * front;
+    return slow[FL_WASH_TONE] + style->passes * lines * (.27f * load - streak_at(brush, slow)) +
+           .36f * front + .3f * MAX(style->tide, style->blooms) * lines * side_at(slow);
 }
 
 void fl_wash_find_tones(const FlWash *wash, float *tones, float *hues)
@@ -135,10 +156,10 @@ static void lay_row(const Brush *brush, const FlArea *area, int y, int16_t *amou
             if (amounts[x] >= 0) {
                 float hue;
                 const float tone = wash->style.wash * tone_at(brush, slow, &hue);
-                const float side =
-                    wash->style.wash * slow[FL_WASH_TONE]; // lines look like dirt in white
-                const float shade = fl_smooth((3.5f * side + .15f) / 1.5f);
-                hue += brush->white * (shade - hue);
+                if (brush->white > 0) { // lines look like dirt in white
+                    const float side = wash->style.wash * slow[FL_WASH_TONE];
+                    hue += brush->white * (fl_smooth((3.5f * side + .15f) / 1.5f) - hue);
+                }
                 amounts[x] = (int16_t)amount_of(brush, amounts[x], slow[FL_WASH_CALM], tone);
                 play[x] = (int8_t)(fl_clamp(hue, -1.95f, 1.95f) * FL_PLAY_ONE);
             }

@@ -70,7 +70,7 @@ static void find_passes(const FlWashField *field, const Places *at, Values value
     noise_at(fl_key(wash->key, KEY_DRY), at, cell, 0, 1, 1, values[FL_WASH_DRY]);
     for (int i = 0; i < at->n; i++) {
         const float across = field->across[1] * at->y[i] + field->across[0] * at->x[i];
-        values[FL_WASH_PASS][i] = across / wash->brush_px + .4f * waver[0][i] + .04f * waver[1][i];
+        values[FL_WASH_PASS][i] = across / wash->brush_px + .3f * waver[0][i] + .05f * waver[1][i];
     }
 }
 
@@ -171,7 +171,7 @@ static void find_near(const Places *at, const float *away, Places *near, int *wh
 /* Fronts at which water stopped: drying lines and rims of blooms, as lobes between cusps. */
 static void find_fronts(const FlWash *wash, const Places *at, Values values)
 {
-    static const float place[2] = {110, 110}, wide[2] = {34, 34}, fine[2] = {12, 12};
+    static const float place[2] = {170, 170}, wide[2] = {34, 34}, fine[2] = {12, 12};
     const uint64_t key = fl_key(wash->key, KEY_LOBES);
     float *all = values[FL_WASH_FRONT], *fronts = values[FL_WASH_FRONTS];
     float away[FL_NOISE_ROW], bloom[FL_NOISE_ROW], lobe[FL_NOISE_ROW], small[FL_NOISE_ROW];
@@ -192,7 +192,7 @@ static void find_fronts(const FlWash *wash, const Places *at, Values values)
         const int i = which[k];
         const float ends = fl_smooth(3 - 3 * fabsf(all[i]) / NEAR_PX);
         all[i] = away[k] - 10 * (fabsf(lobe[k]) - .25f) - 4 * (fabsf(small[k]) - .25f);
-        fronts[i] = wash->style.tide * fl_smooth((place_of[k] - .02f) / .35f) * (1 - bloom[i]) +
+        fronts[i] = wash->style.tide * fl_smooth((place_of[k] + .15f) / .45f) * (1 - bloom[i]) +
                     wash->style.blooms * fl_smooth(.2f + place_of[k]) * bloom[i];
         fronts[i] *= ends;
         values[FL_WASH_ALONG][i] = .8f * front.x[k] - .6f * front.y[k] + 14 * lobe[k];

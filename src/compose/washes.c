@@ -128,18 +128,18 @@ static void add_region(FlWashField *field, int region)
     }
 }
 
-/* Passes lie across the light's slope, or as an image of directions has it where the first of the
- * regions was first seen. */
+/* Passes lie along the axis of the first of the regions, in round ones across the light's slope, or
+ * as an image of directions has it where it was first seen. */
 static void find_across(FlWashField *field)
 {
     const FlAnchor *at = &field->wash->painted->anchor;
-    float *across = field->across;
-    across[0] = .1f * field->light[0] - .35f * field->light[1], across[1] = .9f;
-    if (!field->input->directions.image)
-        return;
-    const float angle = fl_direction_at(&field->input->directions, at->rest_x, at->rest_y, at->side,
-                                        atan2f(-across[0], across[1]));
-    across[0] = -sinf(angle), across[1] = cosf(angle);
+    const float *light = field->light;
+    float angle = atan2f(.35f * light[1] - .1f * light[0], .9f);
+    if (!isnan(at->axis))
+        angle = at->axis * (float)(G_PI / 180);
+    if (field->input->directions.image)
+        angle = fl_direction_at(&field->input->directions, at->rest_x, at->rest_y, at->side, angle);
+    field->across[0] = -sinf(angle), field->across[1] = cosf(angle);
 }
 
 static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input,
@@ -155,7 +155,7 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
     }
     find_box(field.wash, input, around);
     field.size = size_of(input, field.wash->painted->region);
-    field.wash->brush_px = fl_clamp(.31f * field.size, 34, 95);
+    field.wash->brush_px = fl_clamp(.3f * field.size, 34, 75);
     const float angle = (float)(field.wash->painted->settings->light * G_PI / 180);
     field.light[0] = cosf(angle), field.light[1] = sinf(angle);
     find_across(&field);

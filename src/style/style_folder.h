@@ -74,7 +74,7 @@ typedef struct FlStyle {
 } FlStyle;
 
 #define FL_STYLE_TILE "transport.png" // a file of styles that move ink: transport/tile.h
-#define FL_GRANULATION 0.08f          // default for styles
+#define FL_GRANULATION 0.07f          // default for styles
 
 /**
  * Reads a folder. Estimates what it lacks from its frames: the paper's colour, the masks, the
