@@ -84,25 +84,24 @@ void fl_guide_sequence_free(FlGuideSequence *sequence)
     g_free(sequence);
 }
 
-/** Copies a plane of integers of 1 / one px, cropped to `box`, into the plane of `part`, which must
- * be all 0; rows of zeros are not written. channels: 1 or 2. */
-static void place_fixed(FlRect box, const int32_t *crop, int channels, int one, FlRect part,
+/** Copies a plane of integers of 1 / one px, cropped to `box`, into a plane of the whole width,
+ * which must be all 0; rows of zeros are not written. channels: 1 or 2. */
+static void place_fixed(FlRect box, const int32_t *crop, int channels, int one, int width,
                         float *plane)
 {
     const float scale = 1.0f / (float)one;
-    const FlRect both = fl_rect_and(box, part);
-    const size_t n = (size_t)both.width * channels;
-    for (int y = both.y; y < both.y + both.height; y++) {
-        const int32_t *from = crop + ((y - box.y) * (size_t)box.width + both.x - box.x) * channels;
-        float *to = plane + ((y - part.y) * (size_t)part.width + both.x - part.x) * channels;
+    const size_t n = (size_t)box.width * channels;
+    for (int y = 0; y < box.height; y++) {
+        const int32_t *from = crop + y * n;
+        float *to = plane + ((box.y + y) * (size_t)width + box.x) * channels;
         const bool blank = fl_is_blank((const uint8_t *)from, n * sizeof *from);
         for (size_t k = 0; k < n && !blank; k++)
             to[k] = (float)from[k] * scale;
     }
 }
 
-static bool get_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane plane, FlRect part,
-                      float *out, GError **error)
+static bool get_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane plane, float *out,
+                      GError **error)
 {
     const FlFrameRecord *record = &sequence->frames[frame];
     const bool flow = plane == FL_GUIDE_PLANE_FLOW;
@@ -112,7 +111,8 @@ static bool get_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane p
                                                    sizeof *scratch, "a guide", error);
     if (!scratch || !fl_guide_sequence_plane(sequence, frame, plane, scratch, error))
         return false;
-    place_fixed(record->box, scratch, flow ? 2 : 1, flow ? FL_FLOW_ONE : FL_EXTENT_ONE, part, out);
+    place_fixed(record->box, scratch, flow ? 2 : 1, flow ? FL_FLOW_ONE : FL_EXTENT_ONE,
+                sequence->source.width, out);
     return true;
 }
 
@@ -171,9 +171,9 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
     if (area > 0) {
         g_autofree uint8_t *shape = fl_alloc_unset(2 * area, 1, "coverages and angles", error);
         if (!shape || !fl_guide_sequence_shape(sequence, frame, shape, error) ||
-            !get_plane(sequence, frame, FL_GUIDE_PLANE_FLOW, part, guides->flow, error) ||
-            !get_plane(sequence, frame, FL_GUIDE_PLANE_PLUS, part, guides->ext_plus, error) ||
-            !get_plane(sequence, frame, FL_GUIDE_PLANE_MINUS, part, guides->ext_minus, error))
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_FLOW, guides->flow, error) ||
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_PLUS, guides->ext_plus, error) ||
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_MINUS, guides->ext_minus, error))
             return false;
         fl_rect_copy(shape, record->box, guides->mask, part, 1);
         fl_rect_copy(shape + area, record->box, guides->angle, part, 1);
@@ -210,26 +210,15 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
            fl_guide_sequence_planes(sequence, frame, guides, error);
 }
 
-static const char what[] = "the guides of a frame";
-
-bool fl_guides_init_distance(FlGuides *guides, int width, int height, GError **error)
-{
-    const size_t n = (size_t)width * height;
-    *guides = (FlGuides){.width = width, .height = height};
-    if ((guides->mask = fl_alloc_unset(n, 1, what, error)) &&
-        (guides->distance = fl_alloc_unset(n, sizeof *guides->distance, what, error)) &&
-        (guides->depth = fl_alloc_unset(n, sizeof *guides->depth, what, error)))
-        return true;
-    fl_guides_clear(guides);
-    return false;
-}
-
 bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)
 {
     const size_t n = (size_t)width * height;
-    if (!fl_guides_init_distance(guides, width, height, error))
-        return false;
-    if ((guides->flow = fl_alloc_scratch(2 * n, sizeof *guides->flow, what, error)) &&
+    const char *what = "the guides of a frame";
+    *guides = (FlGuides){.width = width, .height = height};
+    if ((guides->mask = fl_alloc_unset(n, 1, what, error)) &&
+        (guides->distance = fl_alloc_unset(n, sizeof *guides->distance, what, error)) &&
+        (guides->depth = fl_alloc_unset(n, sizeof *guides->depth, what, error)) &&
+        (guides->flow = fl_alloc_scratch(2 * n, sizeof *guides->flow, what, error)) &&
         (guides->angle = fl_alloc_scratch(n, 1, what, error)) &&
         (guides->ext_plus = fl_alloc_scratch(n, sizeof *guides->ext_plus, what, error)) &&
         (guides->ext_minus = fl_alloc_scratch(n, sizeof *guides->ext_minus, what, error)) &&

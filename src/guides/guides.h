@@ -102,9 +102,6 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
 bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame);
 
 bool fl_guides_init(FlGuides *guides, int width, int height, GError **error);
-
-/** Room for what fl_guide_sequence_distance() fills, and no more. */
-bool fl_guides_init_distance(FlGuides *guides, int width, int height, GError **error);
 void fl_guides_clear(FlGuides *guides);
 
 /** Frees the flow and the drawing's motion, from which no target is made. */

@@ -115,9 +115,6 @@ int fl_guided_patches(const FlRegionPlan *region, FlRect page);
 /** The page that a painter's rectangle lies on. */
 FlRect fl_painter_page(const FlPainter *painter);
 
-/** The painter's rectangle, px of the guides. */
-FlRect fl_painter_guided(const FlPainter *painter);
-
 /**
  * The source of a painter's guides: the masks within its rectangle, and the motion. Flow files
  * replace the flow from the masks under motion = masks, else carry the paint.

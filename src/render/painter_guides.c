@@ -33,7 +33,8 @@ static FlRect guided_part(const FlStyleInstance *style, FlRect part)
     return fl_field_px(style->exemplar) == 2 ? fl_rect_halved(part) : part;
 }
 
-FlRect fl_painter_guided(const FlPainter *painter)
+/* The painter's rectangle, px of the guides. */
+static FlRect guided(const FlPainter *painter)
 {
     return guided_part(painter->plan->style, painter->result.rect);
 }
@@ -48,7 +49,7 @@ static bool mask_in(const FlPainter *painter, const FlShapes *film, const FlRegi
                     int shown, uint8_t *coverage, GError **error)
 {
     if (!fl_region_lives(plan, film->drawing, shown)) {
-        memset(coverage, 0, fl_rect_pixels(fl_painter_guided(painter)));
+        memset(coverage, 0, fl_rect_pixels(guided(painter)));
         return true;
     }
     return (halves(painter) ? fl_mask_store_get_half : fl_mask_store_get)(
@@ -88,7 +89,7 @@ static bool given_flow(const FlPainter *painter, int frame, float unknown, float
     if (!half)
         return false;
     fl_flow_halve(whole, page.width, page.height, half);
-    fl_rect_copy(half, half_page, flow, fl_painter_guided(painter), 2 * sizeof *half);
+    fl_rect_copy(half, half_page, flow, guided(painter), 2 * sizeof *half);
     return true;
 }
 
@@ -123,7 +124,7 @@ static FlRegionStep step_into(const FlPainter *painter, int frame, const FlOutli
 static FlOutline *outline_in(const FlPainter *painter, const FlShapes *film,
                              const FlRegionPlan *plan, int frame, FlOutline *before, GError **error)
 {
-    const FlRect rect = fl_painter_guided(painter);
+    const FlRect rect = guided(painter);
     g_autofree uint8_t *mask = fl_alloc(fl_rect_pixels(rect), 1, "a mask", error);
     if (!mask || !mask_in(painter, film, plan, frame, mask, error))
         return NULL;
@@ -144,8 +145,8 @@ static FlOutline *outline_of(const FlPainter *painter, int frame, FlOutline *kno
 static float *fluid_motion(FlPainter *painter, const FlRegionStep *step, GError **error)
 {
     const int n = painter->shapes->n_frames;
-    g_autofree float *motion = fl_alloc_scratch(2 * fl_rect_pixels(fl_painter_guided(painter)),
-                                                sizeof *motion, "a fluid", error);
+    g_autofree float *motion =
+        fl_alloc_scratch(2 * fl_rect_pixels(guided(painter)), sizeof *motion, "a fluid", error);
     g_autoptr(FlOutline) last =
         motion ? outline_of(painter, step->before, step->outlines.before, NULL, error) : NULL;
     if (!last)
@@ -169,7 +170,7 @@ static bool known_motion(void *data, int frame, const FlOutlinePair *outlines, f
 {
     FlPainter *painter = data;
     FlRegionStep step = step_into(painter, frame, outlines);
-    const size_t values = 2 * fl_rect_pixels(fl_painter_guided(painter));
+    const size_t values = 2 * fl_rect_pixels(guided(painter));
     g_autofree float *fluid = NULL;
     for (size_t k = 0; k < values && !has_past(painter, frame); k++)
         motion[k] = NAN;
@@ -221,7 +222,7 @@ bool fl_painter_open_fluid(FlPainter *painter, GError **error)
     const FlFluidDials dials = fl_fluid_dials(&painter->plan->settings);
     fl_painter_close_fluid(painter);
     return !has_fluid(painter) ||
-           ((painter->fluid = fl_fluid_new(fl_painter_guided(painter), page, &dials, error)) &&
+           ((painter->fluid = fl_fluid_new(guided(painter), page, &dials, error)) &&
             roll_in(painter, error));
 }
 
@@ -235,7 +236,7 @@ FlGuideSource fl_painter_guide_source(FlPainter *painter)
     const bool masks = painter->plan->settings.motion == FL_MOTION_MASKS;
     const bool given = painter->shapes->flow != NULL;
     const bool known = !masks && !given && (painter->motion || has_fluid(painter));
-    const FlRect rect = fl_painter_guided(painter);
+    const FlRect rect = guided(painter);
     return (FlGuideSource){.width = rect.width,
                            .height = rect.height,
                            .n_frames = painter->n_pictures + 2 * painter->wrap,
@@ -415,7 +416,7 @@ static bool read_map(const FlPainter *painter, FlGuides *guides, GError **error)
            fl_control_map_make(
                own,
                fl_drawing_number(painter->shapes->drawing, frame_of(painter, painter->picture)),
-               fl_painter_guided(painter), page.width, page.height, &guides->share, error);
+               guided(painter), page.width, page.height, &guides->share, error);
 }
 
 /* The depth takes as much scratch as the other planes, which are made later. Guides of some presets
@@ -423,7 +424,7 @@ static bool read_map(const FlPainter *painter, FlGuides *guides, GError **error)
 bool fl_painter_make_guides(FlPainter *painter, GError **error)
 {
     FlGuides *guides = &painter->guides;
-    const FlRect rect = fl_painter_guided(painter);
+    const FlRect rect = guided(painter);
     const int picture = painter->picture;
     const bool deep = fl_knows_depth(&painter->plan->settings.params);
     if (!fl_guides_init(guides, rect.width, rect.height, error))

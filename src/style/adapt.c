@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/rect.h"
+#include "guides/flow_file.h"
 #include "style/resample.h"
 
 #include <math.h>
@@ -215,20 +216,6 @@ static void halve_bytes(const uint8_t *plane, int width, int height, int channel
         }
 }
 
-static void halve_flow(const float *flow, int width, int height, float *half)
-{
-    for (int y = 0; y < fl_half_side(height); y++)
-        for (int x = 0; x < fl_half_side(width); x++, half += 2) {
-            const int right = MIN(2 * x + 1, width - 1), lower = MIN(2 * y + 1, height - 1);
-            const float *rows[] = {flow + 4 * (size_t)y * (size_t)width,
-                                   flow + 2 * (size_t)lower * (size_t)width};
-            for (int c = 0; c < 2; c++)
-                half[c] = (rows[0][4 * x + c] + rows[0][2 * right + c] + rows[1][4 * x + c] +
-                           rows[1][2 * right + c]) /
-                          8;
-        }
-}
-
 FlStyle *fl_style_halve(const FlStyle *style, GError **error)
 {
     const size_t pixels = (size_t)style->width * (size_t)style->height;
@@ -245,8 +232,8 @@ FlStyle *fl_style_halve(const FlStyle *style, GError **error)
                     out->rgb + 3 * t * half);
         halve_bytes(style->mask + t * pixels, style->width, style->height, 1, out->mask + t * half);
         if (style->flow)
-            halve_flow(style->flow + 2 * t * pixels, style->width, style->height,
-                       out->flow + 2 * t * half);
+            fl_flow_halve(style->flow + 2 * t * pixels, style->width, style->height,
+                          out->flow + 2 * t * half);
     }
     return g_steal_pointer(&out);
 }

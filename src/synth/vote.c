@@ -154,8 +154,15 @@ void fl_vote_rows(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernel
     strip_free(&strip);
 }
 
+/* A picture of twice the size of a field, with width or height one less if that is odd. */
+typedef struct DoubledPicture {
+    uint8_t *rgb;  // 3 bytes of sRGB a pixel, untouched without votes
+    size_t stride; // pixels from row to row
+    int width, height;
+} DoubledPicture;
+
 /* Pixel (x, y) of the field as four of a picture, in which those beyond its size have no place. */
-static void write_doubled(float (*value)[4], int x, int y, const FlDoubledPicture *picture)
+static void write_doubled(float (*value)[4], int x, int y, const DoubledPicture *picture)
 {
     for (int child = 0; child < 4; child++) {
         const int at_x = 2 * x + child % 2, at_y = 2 * y + child / 2;
@@ -165,9 +172,11 @@ static void write_doubled(float (*value)[4], int x, int y, const FlDoubledPictur
     }
 }
 
-void fl_vote_block_doubled(const FlNnf *nnf, FlRect block, const FlExemplarLevel *level,
-                           const FlKernels *kernels, float sharpness,
-                           const FlDoubledPicture *picture)
+/* A block of the field at twice the size: each match votes as four matches of `level`, whose
+ * colours have twice the resolution. In a coherent field the four agree and are sampled once. */
+static void vote_block_doubled(const FlNnf *nnf, FlRect block, const FlExemplarLevel *level,
+                               const FlKernels *kernels, float sharpness,
+                               const DoubledPicture *picture)
 {
     const FlVoteSource source = voted_of(level, sharpness);
     Strip strip = strip_new(block.width);
@@ -190,11 +199,10 @@ void fl_enlarge(const FlExemplarLevel *level, const FlNnf *nnf, const FlBlocks *
     const FlRect page = {0, 0, enlarged->width, enlarged->height};
     const FlRect full = fl_rect_doubled(rect, page);
     const size_t stride = (size_t)enlarged->width;
-    const FlDoubledPicture picture = {enlarged->rgb +
-                                          3 * ((size_t)full.y * stride + (size_t)full.x),
-                                      stride, full.width, full.height};
+    const DoubledPicture picture = {enlarged->rgb + 3 * ((size_t)full.y * stride + (size_t)full.x),
+                                    stride, full.width, full.height};
 #pragma omp parallel for schedule(dynamic, 1)
     for (int k = 0; k < blocks->n; k++)
-        fl_vote_block_doubled(nnf, blocks->block[k], level, enlarged->kernels, enlarged->sharpness,
-                              &picture);
+        vote_block_doubled(nnf, blocks->block[k], level, enlarged->kernels, enlarged->sharpness,
+                           &picture);
 }

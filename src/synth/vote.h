@@ -28,20 +28,6 @@ void fl_vote(const FlNnf *nnf, const FlBlocks *blocks, const FlExemplarLevel *le
 void fl_vote_rows(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
                   float sharpness, int channels, int y, float *colour);
 
-/** A picture of twice the size of a field, with width or height one less if that is odd. */
-typedef struct FlDoubledPicture {
-    uint8_t *rgb;  // 3 bytes of sRGB a pixel, untouched without votes
-    size_t stride; // pixels from row to row
-    int width, height;
-} FlDoubledPicture;
-
-/** fl_vote() by the calling thread at twice the size, for a block of the field: each match votes as
- * four matches of `level`, whose colours have twice the resolution. In a coherent field the four
- * agree and are sampled once. */
-void fl_vote_block_doubled(const FlNnf *nnf, FlRect block, const FlExemplarLevel *level,
-                           const FlKernels *kernels, float sharpness,
-                           const FlDoubledPicture *picture);
-
 /** The picture that enlarged votes are written to. */
 typedef struct FlEnlarged {
     const FlKernels *kernels;
