@@ -41,7 +41,7 @@ static FlDrawing *open_drawing(const char *folder, bool apart)
 {
     g_autoptr(GError) error = NULL;
     const char *const inputs[] = {folder, NULL};
-    const FlDrawingOptions options = {.frames = {inputs, 1}, .apart = apart};
+    const FlDrawingOptions options = {.frames = {inputs, 1}, .sandboxed = apart};
     FlDrawing *drawing = fl_drawing_open(&options, NULL, &error);
     g_assert_no_error(error);
     return drawing;
@@ -244,7 +244,7 @@ static void reading_can_be_interrupted(void)
         g_free(scratch_write(folder, name, SVG(SHAPES)));
     }
     const char *const inputs[] = {folder, NULL};
-    const FlDrawingOptions options = {.frames = {inputs, 1}, .apart = true, .reading = never};
+    const FlDrawingOptions options = {.frames = {inputs, 1}, .sandboxed = true, .reading = never};
     g_autoptr(GError) error = NULL;
     g_assert_null(fl_drawing_open(&options, NULL, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_INTERRUPTED);

@@ -19,7 +19,7 @@ void fl_least_squares_add(FlLeastSquares *sum, const double row[FL_MODES], doubl
     }
 }
 
-void fl_least_squares_hold(FlLeastSquares *sum, int k, double ridge)
+void fl_least_squares_ridge(FlLeastSquares *sum, int k, double ridge)
 {
     sum->a[k][k] += ridge;
 }

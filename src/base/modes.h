@@ -21,7 +21,7 @@ void fl_least_squares_add(FlLeastSquares *sum, const double row[FL_MODES], doubl
                           double weight);
 
 /** Adds ridge * p_k². */
-void fl_least_squares_hold(FlLeastSquares *sum, int k, double ridge);
+void fl_least_squares_ridge(FlLeastSquares *sum, int k, double ridge);
 
 /** Returns: false if the unknowns are not determined. */
 bool fl_least_squares_solve(const FlLeastSquares *sum, double p[FL_MODES]);

@@ -42,7 +42,7 @@ typedef struct FlWorkItem {
     int index;     // passed to the work function
     double cost;   // of one thread, in any unit that all items share
     bool alone;    // is too large to be done beside others
-    bool together; // result: all threads did it together
+    bool together; // result: all threads worked on this item
 } FlWorkItem;
 
 /** thread: 0 … fl_schedule_threads() - 1, no two at a time the same. */

@@ -14,10 +14,10 @@
 
 /** Options of reading a sequence; zero is the default of every field. */
 typedef struct FlDrawingOptions {
-    FlSequenceOptions frames; // its sandbox with apart
+    FlSequenceOptions frames; // its sandbox, with `sandboxed`
     FlCanvas canvas;          // of drawings without a size
     double dpi;               // 0: 96
-    bool apart;               // read and drawn by other processes, see worker/workers.h
+    bool sandboxed;           // read and drawn by other processes, see worker/workers.h
     bool registered;          // move frames that begin at 0,0 back, see drawing/register_frames.h
     int width, height;        // of the picture, px; 0: the drawing's; both: fitted and padded
     double scale;             // px per px of the drawing; 0: 1; not together with width or height
@@ -25,7 +25,7 @@ typedef struct FlDrawingOptions {
     FlStrokes strokes;
     FlRegionKey key;
     /** Tells now and then, from the calling thread, how many frames were read; false interrupts.
-     *  Only where they are read apart; NULL: not called. */
+     *  Only where they are sandboxed; NULL: not called. */
     bool (*reading)(void *data, const FlSequence *sequence, int done);
     void *data;          // for reading
     const FlRule *rules; // the first that matches wins; used during fl_drawing_open() only

@@ -489,8 +489,8 @@ FlDrawing *fl_drawing_open(const FlDrawingOptions *options, FlWarnings *warnings
     if (!sequence)
         return NULL;
     g_auto(GStrv) paths = fl_paths_of((const char *const *)sequence->found);
-    g_autoptr(FlWorkers) workers =
-        fl_workers_new((const char *const *)paths, options->frames.sandbox, options->apart, error);
+    g_autoptr(FlWorkers) workers = fl_workers_new(
+        (const char *const *)paths, options->frames.sandbox, options->sandboxed, error);
     if (!workers)
         return NULL;
     FlSurvey survey;
@@ -499,7 +499,7 @@ FlDrawing *fl_drawing_open(const FlDrawingOptions *options, FlWarnings *warnings
         drawing = make_film(options, sequence, &survey, error);
     if (drawing) {
         drawing->workers = g_steal_pointer(&workers);
-        const char *lack = options->apart ? fl_workers_lack(drawing->workers) : NULL;
+        const char *lack = options->sandboxed ? fl_workers_lack(drawing->workers) : NULL;
         if (lack)
             fl_warnings_add(warnings, sequence->frame[0].file, -1, NULL,
                             "is read without a whole sandbox: %s", lack);

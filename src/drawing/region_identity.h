@@ -46,8 +46,8 @@ typedef struct FlTrack {
 GArray *fl_leaf_tracks_find(const FlSurvey *survey, const int *label_of, int ***track_of);
 
 /**
- * The nesting depth of each track in others of its paint: 0 for one that lies on no other, or not
- * all the time, or that is small. As one region such leaves would hide each other in the
+ * The nesting depth of each track in others of its paint: 0: not nested,
+ * nested only in some frames, or small. As one region such leaves would hide each other in the
  * whole-shape mask.
  *
  * Returns: n_tracks levels, to be freed.

@@ -103,7 +103,7 @@ static bool solve(const GArray *rows, double p[FL_MODES])
         fl_least_squares_add(&sum, r->row, r->value, r->weight);
     }
     for (int k = 0; k < FL_MODES; k++)
-        fl_least_squares_hold(&sum, k, k < 3 ? FIRM : RIDGE);
+        fl_least_squares_ridge(&sum, k, k < 3 ? FIRM : RIDGE);
     if (!fl_least_squares_solve(&sum, p))
         return false;
     double energy = 0, weight = 0;

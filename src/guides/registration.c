@@ -198,7 +198,7 @@ static bool improve(const Work *w, Map *map, const GArray *points, double *step)
     }
     hold_unseen(&sum);
     for (int k = 0; k < FL_MODES; k++)
-        fl_least_squares_hold(&sum, k, points->len * (k < 3 ? FIRM : STIFF));
+        fl_least_squares_ridge(&sum, k, points->len * (k < 3 ? FIRM : STIFF));
     double p[FL_MODES];
     if (!fl_least_squares_solve(&sum, p))
         return false;

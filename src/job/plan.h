@@ -33,7 +33,7 @@ typedef struct FlPlan {
     FlDigest reading;         // of what decides the drawing
     FlDigest request;         // of what was asked for, before anything of it is read
     FlDigest made_from;       // of all that decides the frames, if it is known before reading
-    FlFinished finished;      // ALL: the rest of the plan is not made
+    FlFinished finished;      // ALL: the fields below are unset
     int n_finished;           // frames of what is finished
     FlCaller caller;          // of the options
     uint8_t paper[3];

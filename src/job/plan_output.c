@@ -22,7 +22,7 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
 {
     FlDrawingOptions wanted = {.frames = frames_of(options),
                                .dpi = options->dpi,
-                               .apart = true,
+                               .sandboxed = true,
                                .registered = options->registration == FL_REGISTRATION_ON,
                                .width = options->width,
                                .height = options->height,

@@ -232,7 +232,7 @@ bool fl_style_cache_seek(FlStyleCache *cache, int frame, int n_frames, bool loop
 /* ---- sizes of styles ------------------------------------------------------------------------- */
 
 enum { LARGEST = 4 };    // times the size of a recipe
-#define MOST_SECONDS 600 // of one core: no recipe of a stranger may take more
+#define MOST_SECONDS 600 // CPU seconds, at most, for a recipe
 #define WAIT_US (G_USEC_PER_SEC / 5)
 
 /* The recipe in a style's folder; may be NULL. */

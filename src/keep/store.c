@@ -30,8 +30,8 @@ struct FlStore {
     GQueue held;            // of HeldPicture; the one used last is the first
     guint most_held;
     size_t held_bytes;
-    char *problem; // to be told; may be NULL
-    bool told;     // one was
+    char *problem; // to be reported; may be NULL
+    bool reported; // one was
     bool full;     // writing has failed
     double added;  // bytes since the store was last trimmed
 };
@@ -83,7 +83,7 @@ static GBytes *held_bytes(FlStore *store, FlKept kind, FlDigest name)
     return bytes;
 }
 
-static void hold(FlStore *store, FlDigest name, const FlSpan *parts, int n)
+static void remember(FlStore *store, FlDigest name, const FlSpan *parts, int n)
 {
     g_autoptr(GByteArray) all = g_byte_array_new();
     for (int k = 0; k < n; k++)
@@ -122,7 +122,7 @@ static char *path_of(const FlStore *store, FlKept kind, FlDigest name)
 /* Keeps the first problem; the caller has the lock. Takes the text. */
 static void keep_problem(FlStore *store, char *text)
 {
-    if (store->problem || store->told)
+    if (store->problem || store->reported)
         g_free(text);
     else
         store->problem = text;
@@ -134,7 +134,7 @@ void fl_store_warn(FlStore *store)
         return;
     g_mutex_lock(&store->lock);
     g_autofree char *text = g_steal_pointer(&store->problem);
-    store->told = store->told || text;
+    store->reported = store->reported || text;
     g_mutex_unlock(&store->lock);
     if (text && store->options.warning)
         store->options.warning(text, store->options.data);
@@ -208,7 +208,7 @@ static void trim(FlStore *store);
 void fl_store_put(FlStore *store, FlKept kind, FlDigest name, const FlSpan *parts, int n)
 {
     if (kind == FL_KEPT_PICTURE && store->options.memory > 0)
-        hold(store, name, parts, n);
+        remember(store, name, parts, n);
     if (!store->folder)
         return;
     g_autofree char *path = path_of(store, kind, name);

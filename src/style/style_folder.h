@@ -90,7 +90,7 @@ FlStyle *fl_style_load(const char *folder, GError **error);
  * $FLUIDY_STYLES, the user's and the system's data folders, the installed one, the source tree's;
  * else there by its folder's name or the one in its style.ini, whatever the case.
  *
- * Returns: the folder; NULL with FL_ERROR_STYLE, which lists the names that are near.
+ * Returns: the folder; NULL with FL_ERROR_STYLE, which lists similar names.
  */
 char *fl_style_find(const char *name, GError **error);
 

@@ -116,7 +116,7 @@ static void add_layers(const FlCarriedInk *ink, const float *whole, int x, int y
 }
 
 /* Shortens a velocity to `farthest`. */
-static void hold(float velocity[2], float farthest)
+static void clamp_speed(float velocity[2], float farthest)
 {
     const float speed = sqrtf(velocity[0] * velocity[0] + velocity[1] * velocity[1]);
     const float held = speed > farthest ? farthest / speed : 1;
@@ -142,7 +142,7 @@ static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, const
             if (taper == 0)
                 continue;
             add_layers(ink, whole, x, y, taper, v);
-            hold(v, farthest);
+            clamp_speed(v, farthest);
         }
 }
 

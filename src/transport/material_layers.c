@@ -5,7 +5,7 @@
 #include "transport/revealed.h"
 #include <math.h>
 
-#define FADE 0.1f    // of a fade, by frame: it takes six where a layer is strained wholly
+#define FADE 0.1f    // per frame; a fully strained layer is gone after six
 #define HASTE 4      // per mean strain of the fresh layer
 #define LEAST 0.001f // speed for a second layer
 #define UNSEEN 0.01f // share of a region in which an old layer may still be seen

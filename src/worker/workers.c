@@ -31,7 +31,7 @@ typedef struct Worker {
     guint64 id;      // of those it works for; 0: it was not started, or has ended
     uint64_t number; // of its last ticket
     bool busy;
-    atomic_bool gone; // set by the thread that uses it, read by those that look for a free one
+    atomic_bool dead; // set by the thread that uses it, read by those that look for a free one
 } Worker;
 
 static struct {
@@ -97,8 +97,8 @@ static void end_workers(void)
     const FlOrder order = FL_ORDER_END;
     for (int i = 0; i < shared.n; i++) {
         Worker *w = &shared.worker[i];
-        if (w->id && !w->gone)
-            w->gone = send(w->process.control, &order, sizeof order, MSG_NOSIGNAL) < 0;
+        if (w->id && !w->dead)
+            w->dead = send(w->process.control, &order, sizeof order, MSG_NOSIGNAL) < 0;
         w->id = 0;
     }
 }
@@ -134,8 +134,8 @@ static Worker *first_free(guint64 id, bool *none)
     Worker *found = NULL;
     *none = true;
     for (Worker *w = shared.worker; w < shared.worker + shared.n; w++) {
-        *none &= w->gone;
-        if (!w->busy && !w->gone && (!found || (w->id == id && found->id != id)))
+        *none &= w->dead;
+        if (!w->busy && !w->dead && (!found || (w->id == id && found->id != id)))
             found = w;
     }
     return found;
@@ -181,15 +181,15 @@ static bool receive_report(Worker *w, FlWorkerReport *report)
         n = recv(w->process.control, report, sizeof *report, MSG_WAITALL);
     while (n < 0 && errno == EINTR);
     if (n != (ssize_t)sizeof *report)
-        w->gone = true;
-    return !w->gone;
+        w->dead = true;
+    return !w->dead;
 }
 
 static bool send_order(Worker *w, FlOrder order)
 {
     if (send(w->process.control, &order, sizeof order, MSG_NOSIGNAL) != sizeof order)
-        w->gone = true;
-    return !w->gone;
+        w->dead = true;
+    return !w->dead;
 }
 
 /** Starts the worker with the orders, unless it has them. */
@@ -224,7 +224,7 @@ static void await(Worker *w, FlWorkers *workers, const FlFileWait *wait, Outcome
 {
     const gint64 start = g_get_monotonic_time();
     const gint64 most = FL_WORKER_WALL * fl_limit(FL_LIMIT_SECONDS) * G_USEC_PER_SEC;
-    while (!w->gone) {
+    while (!w->dead) {
         struct pollfd ends[] = {{w->process.requests, POLLIN, 0}, {w->process.control, POLLIN, 0}};
         const int n = poll(ends, 2, TICK_MS);
         outcome->stopped = wait && wait->stopped && wait->stopped(wait->data);
@@ -242,7 +242,7 @@ static void await(Worker *w, FlWorkers *workers, const FlFileWait *wait, Outcome
                 atomic_store(&workers->answered, true);
                 return;
             }
-            w->gone |= got == 0;
+            w->dead |= got == 0;
         } else if (n > 0 && ends[1].revents) {
             FlWorkerReport report = {0};
             if (receive_report(w, &report))
