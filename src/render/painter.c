@@ -157,8 +157,9 @@ static bool make_sequence(FlPainter *painter, GError **error)
         fl_digest_add(&made_of, &painter->plan->style_key, sizeof painter->plan->style_key);
     }
     FlKeptGuides *kept = painter->kept;
+    const int last = settings->detail == FL_DETAIL_DRAFT ? FL_KEPT_GUIDES - 1 : 0; // they are small
     int k = 0;
-    while (k < FL_KEPT_GUIDES - 1 && !fl_digest_is_same(made_of, kept[k].made_of))
+    while (k < last && !fl_digest_is_same(made_of, kept[k].made_of))
         k++;
     FlKeptGuides guides = kept[k];
     memmove(kept + 1, kept, (size_t)k * sizeof *kept);
