@@ -83,6 +83,7 @@ static FlMaskStore *masks_of(const FlDrawing *drawing, GError **error)
     for (int f = 0; f < fl_drawing_frames(drawing); f++) {
         g_autoptr(FlDrawList) runs = fl_drawing_draw_list(drawing, f, error);
         for (int r = 0; runs && r < fl_drawing_regions(drawing); r++) {
+            memset(mask, 0, (size_t)w * h);
             fl_draw_list_mask(runs, r, w, h, mask);
             g_assert_true(fl_mask_store_put(masks, r, f, mask, error));
         }

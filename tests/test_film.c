@@ -35,7 +35,9 @@ static void mask_of(const FlDrawing *drawing, int frame, int region, uint8_t *ma
 {
     g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, frame, NULL);
     g_assert_nonnull(draws);
-    fl_draw_list_mask(draws, region, fl_drawing_width(drawing), fl_drawing_height(drawing), mask);
+    const int width = fl_drawing_width(drawing), height = fl_drawing_height(drawing);
+    memset(mask, 0, (size_t)width * (size_t)height);
+    fl_draw_list_mask(draws, region, width, height, mask);
 }
 
 /** "name*frames name*frames …"; names of regions that are not painted in brackets. */
@@ -325,7 +327,7 @@ static void a_mask_is_the_whole_shape(void)
     g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, 0, NULL);
     g_assert_cmpint(draws->n, ==, 3); // red, half; blue; red
     g_assert_cmpint(draws->draw[0].alpha, ==, 128);
-    uint8_t mask[10000];
+    uint8_t mask[10000] = {0};
     fl_draw_list_mask(draws, 0, 100, 100, mask);
     int area = 0;
     for (int p = 0; p < 10000; p++)
@@ -341,7 +343,7 @@ static int inside_of(const char *shape)
     const FlDrawingOptions options = {0};
     g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
     g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, 0, NULL);
-    uint8_t mask[10000];
+    uint8_t mask[10000] = {0};
     int inside = 0;
     fl_draw_list_mask(draws, 0, 100, 100, mask);
     for (int p = 0; p < 10000; p++)

@@ -35,6 +35,7 @@ static void fill_masks(Sequence *s)
     for (int f = 0; f < fl_drawing_frames(s->drawing); f++) {
         g_autoptr(FlDrawList) runs = fl_drawing_draw_list(s->drawing, f, NULL);
         for (int r = 0; r < fl_drawing_regions(s->drawing); r++) {
+            memset(mask, 0, SIZE * SIZE);
             fl_draw_list_mask(runs, r, SIZE, SIZE, mask);
             g_assert_true(fl_mask_store_put(s->masks, r, f, mask, NULL));
         }

@@ -273,8 +273,8 @@ static bool put_regions(const FlSurround *surround, const Frame *frame, const Fl
         if (limits[r] == FL_EDGE_NONE || (painted_of && painted_of[r] < 0))
             continue;
         find_edges(frame->draws, &region, limits, neighbours, edge);
-        region.box = fl_draw_list_put_mask(frame->draws, r, surround->width, surround->height,
-                                           frame->coverage);
+        region.box =
+            fl_draw_list_mask(frame->draws, r, surround->width, surround->height, frame->coverage);
         if (!put_shared(surround, frame, &region, error) ||
             !put_seen(surround, frame, &region, error))
             return false;

@@ -155,13 +155,11 @@ FlDrawList *fl_drawing_unpack_draws(const FlDrawing *drawing, GBytes *packed, GE
 /**
  * The region's whole-shape mask in a frame: the union of its draws' coverage. A shape that fades,
  * such as a glow, is inside as far as it is seen; what is drawn of it is up to its coverage.
+ *
+ * coverage: a plane of width * height that is 0. Returns: a rectangle beyond which it stays 0.
  */
-void fl_draw_list_mask(const FlDrawList *draws, int region, int width, int height,
-                       uint8_t *coverage);
-
-/** The same into a plane that is 0. Returns: a rectangle beyond which the plane stays 0. */
-FlRect fl_draw_list_put_mask(const FlDrawList *draws, int region, int width, int height,
-                             uint8_t *coverage);
+FlRect fl_draw_list_mask(const FlDrawList *draws, int region, int width, int height,
+                         uint8_t *coverage);
 
 /** The frame without paint: all draws composited, as width * height * 4 straight sRGBA. */
 void fl_draw_list_flat(const FlDrawList *draws, int width, int height, uint8_t *rgba);

@@ -95,6 +95,7 @@ static bool draw_frames(const FlDrawing *drawing, FlMaskStore *masks)
             return false;
         check_draws(drawing, draws);
         for (int r = 0; r < MIN(fl_drawing_regions(drawing), MOST_REGIONS); r++) {
+            memset(mask, 0, (size_t)width * height);
             fl_draw_list_mask(draws, r, width, height, mask);
             g_assert_true(fl_mask_store_put(masks, r, f, mask, NULL));
         }
