@@ -54,40 +54,27 @@ void fl_wet_sheet_clear(FlWetSheet *sheet)
     *sheet = (FlWetSheet){0};
 }
 
-static int wrapped(int x, int size)
+static int wrapped(double x, int size)
 {
-    return (x % size + size) % size;
+    const int rest = (int)floor(x) % size;
+    return rest < 0 ? rest + size : rest;
 }
 
-/** The column and the row of the grain at a px of the cells, which moves with the paper. */
-static int grain_column(const FlWetSheet *sheet, int x)
-{
-    return wrapped(x + sheet->cell_px * (int)sheet->fibres.place.x0, sheet->width);
-}
-
-static const FlPaperGrains *grain_row(const FlWetSheet *sheet, int y)
-{
-    const int row = wrapped(y + sheet->cell_px * (int)sheet->fibres.place.y0, sheet->height);
-    return sheet->grain + (size_t)row * (size_t)sheet->width;
-}
-
-/** The grain at a px of the cells of a sheet that has turned. */
+/** The grain at a px of the cells, which moves and turns with the paper. */
 static FlPaperGrains grain_at(const FlWetSheet *sheet, int x, int y)
 {
     const FlAffine *place = &sheet->fibres.place;
     const double c = sheet->cell_px;
-    const int column = (int)floor(place->xx * x + place->xy * y + c * place->x0);
-    const int row = (int)floor(place->yx * x + place->yy * y + c * place->y0);
-    return sheet->grain[(size_t)wrapped(row, sheet->height) * (size_t)sheet->width +
-                        (size_t)wrapped(column, sheet->width)];
+    const int column = wrapped(place->xx * x + place->xy * y + c * place->x0, sheet->width);
+    const int row = wrapped(place->yx * x + place->yy * y + c * place->y0, sheet->height);
+    return sheet->grain[(size_t)row * (size_t)sheet->width + (size_t)column];
 }
 
 FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t at)
 {
     const int c = sheet->cell_px;
-    const int x = c * (at % sheet->page.width) + c / 2, y = c * (at / sheet->page.width) + c / 2;
-    return fl_wet_only_pans(&sheet->fibres.place) ? grain_row(sheet, y)[grain_column(sheet, x)]
-                                                  : grain_at(sheet, x, y);
+    return grain_at(sheet, c * (at % sheet->page.width) + c / 2,
+                    c * (at / sheet->page.width) + c / 2);
 }
 
 void fl_wet_sheet_restore(FlWetSheet *sheet, FlRect wet, const FlWetCell *cells, FlAffine place)
@@ -407,19 +394,9 @@ static int cell_before(const FlWetSheet *sheet, int px, float *share)
 static void read_grain(const FlWetSheet *sheet, int x, int y, FlColumns columns,
                        const LayerRows *rows)
 {
-    const FlPaperGrains *grain = grain_row(sheet, y);
-    const bool turned = !fl_wet_only_pans(&sheet->fibres.place);
-    int column = grain_column(sheet, sheet->cell_px * columns.first + x);
-    for (int i = columns.first; i < columns.last && turned; i++) {
+    for (int i = columns.first; i < columns.last; i++) {
         const FlPaperGrains own = grain_at(sheet, sheet->cell_px * i + x, y);
         rows->hollow[i] = share_of(own.hollow), rows->spot[i] = share_of(own.spot);
-    }
-    for (int i = columns.first; i < columns.last && !turned; i++) {
-        rows->hollow[i] = share_of(grain[column].hollow);
-        rows->spot[i] = share_of(grain[column].spot);
-        column += sheet->cell_px;
-        if (column >= sheet->width)
-            column -= sheet->width;
     }
 }
 
