@@ -44,13 +44,13 @@ typedef struct FlEngine {
     /** Switches energies in the statistics on or off; NULL: they are free, or missing. */
     void (*measure)(void *state, bool energies);
     /** The next frame, in order; clears the guides only if they are disposable. An empty mask makes
-     * the next one a first frame again. Guides of a part of the frame come to engines that rest. */
+     * the next one a first frame again. */
     bool (*frame)(void *state, FlGuides *guides, const FlEnginePaint *paint, GError **error);
     /** Makes the next frame from the last one, when all guides are equal and still: it keeps the
      * picture. Returns: false if the frame must be painted instead. NULL: always paint it. */
     bool (*rest)(void *state);
     /** The number of frames in which paint still changes after the drawing has come to rest; may be
-     * NULL. Until then regions and their parts do not rest. */
+     * NULL. Until then regions do not rest. */
     int (*drying)(const FlStyleInstance *style, const FlParams *params);
     /** The guides of the frame just painted, which had a view and levels in its statistics. May be
      * NULL. FL_ERROR_NO_MEMORY. */
