@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#define STEP_PX 4 // px of the page between points
+#define STEP_PX 5 // px of the page between points
 
 /* ---- a wash ---------------------------------------------------------------------------------- */
 
@@ -46,6 +46,7 @@ static void put_together(const FlWashField *field)
     const size_t n = fl_wash_points(wash);
     const float lit = light_of(field);
     const float uneven = .16f + .1f * fl_smooth(field->size / 200 - 1); // puddles need room
+    const float large = .5f + .5f * fl_smooth(field->size / 200 - .3f); // short lines are scars
     const float quiet = 1 - .45f * fl_smooth(field->size / 300 - 1); // a ground is laid with care
     fl_field_find_pools(field, pool);
     fl_field_find_heart(field, heart);
@@ -67,7 +68,7 @@ static void put_together(const FlWashField *field)
         tone[i] *= breadth[i];
         hue[i] *= share_of_hue[i];
         wash->plane[FL_WASH_LINES][i] = lines;
-        wash->plane[FL_WASH_FRONTS][i] *= lines;
+        wash->plane[FL_WASH_FRONTS][i] *= large * lines;
         const float middle = wash->plane[FL_WASH_CALM][i]; // the rim is found here and lost there
         const float lost = .9f * fl_smooth(.65f + 1.2f * wash->plane[FL_WASH_DRY][i]);
         const float calm = wash->style.calm * share_at(field, FL_MAP_CALM, i);
