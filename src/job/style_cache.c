@@ -352,10 +352,11 @@ static FlStyle *make(const FlRecipe *recipe, const char *path, int size, const c
 static FlStyle *larger(const FlRecipe *recipe, const char *path, int size, const char *folder,
                        FlCaller caller, GError **error)
 {
+    const FlStop stop = {caller.stopped, caller.data};
     if (is_kept(folder))
-        return fl_style_load(folder, error);
+        return fl_style_load_until(folder, &stop, error);
     const int lock = wait_for_lock(folder, caller);
-    FlStyle *style = is_kept(folder) ? fl_style_load(folder, error)
+    FlStyle *style = is_kept(folder) ? fl_style_load_until(folder, &stop, error)
                                      : make(recipe, path, size, folder, caller, error);
     release_lock(lock, folder);
     return style;
@@ -364,7 +365,8 @@ static FlStyle *larger(const FlRecipe *recipe, const char *path, int size, const
 FlStyle *fl_style_load_for(const char *folder, float scale, float texture_px, float least_px,
                            bool makes, FlCaller caller, float *factor, GError **error)
 {
-    g_autoptr(FlStyle) style = fl_style_load(folder, error);
+    const FlStop stop = {caller.stopped, caller.data};
+    g_autoptr(FlStyle) style = fl_style_load_until(folder, &stop, error);
     if (!style)
         return NULL;
     const float given = scale > 0 ? scale : style->scale;

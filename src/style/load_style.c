@@ -92,7 +92,9 @@ static bool read_pictures(FlStyle *style, const FlSeries *series, int first, con
 #pragma omp parallel for ordered schedule(static, 1)
     for (int i = first; i < series->n; i++) {
         GError *reason = NULL;
-        g_autoptr(FlPicture) picture = read_picture(series->path[i], &reason);
+        g_autoptr(FlPicture) picture = NULL;
+        if (!fl_stop_asked(style->stop, &reason))
+            picture = read_picture(series->path[i], &reason);
         if (picture && check_size(picture, style, series->path[i], like, &reason))
             store(style, i, picture);
 #pragma omp ordered
@@ -203,7 +205,13 @@ static FlStyle *new_style(const char *folder)
 
 FlStyle *fl_style_load(const char *folder, GError **error)
 {
+    return fl_style_load_until(folder, NULL, error);
+}
+
+FlStyle *fl_style_load_until(const char *folder, const FlStop *stop, GError **error)
+{
     g_autoptr(FlStyle) style = new_style(folder);
+    style->stop = stop;
     g_autofree char *manifest = g_build_filename(folder, "style.ini", NULL);
     if (!g_file_test(folder, G_FILE_TEST_IS_DIR)) {
         broken(error, folder, "no such folder: expected a style");
@@ -222,5 +230,6 @@ FlStyle *fl_style_load(const char *folder, GError **error)
         !fl_border_estimate(&clip, style->mask, &style->border_px, error))
         return NULL;
     style->smoothness = fl_style_smoothness(style);
+    style->stop = NULL;
     return g_steal_pointer(&style);
 }

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_STYLE_STYLE_FOLDER_H
 #define FLUIDY_STYLE_STYLE_FOLDER_H
 
+#include "base/error.h"
 #include "params/region_settings.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -71,6 +72,7 @@ typedef struct FlStyle {
     char *missing_orientations; // directions that no outline faces, by style.ini; "none" or NULL
     FlOverrides settings;       // of regions with this style, before all others
     unsigned guessed;           // FlGuess bits (manifest.h): values that are estimated
+    const FlStop *stop;         // of its reading
 } FlStyle;
 
 #define FL_STYLE_TILE "transport.png" // a file of styles that move ink: transport/tile.h
@@ -84,6 +86,9 @@ typedef struct FlStyle {
  * FL_ERROR_INPUT for a flow field; FL_ERROR_NO_MEMORY.
  */
 FlStyle *fl_style_load(const char *folder, GError **error);
+
+/** Likewise, unless it is stopped: FL_ERROR_INTERRUPTED. */
+FlStyle *fl_style_load_until(const char *folder, const FlStop *stop, GError **error);
 
 /**
  * Finds a style by path, if it has a slash or is a folder; else by the name of its folder in
