@@ -27,7 +27,7 @@ static void set_of_region(const FlOption *o, const char *value, FlRegionSettings
 static FlFacts *facts_of(FlOptionScope scope, const void *object)
 {
     FlFacts *facts = fl_facts_new();
-    fl_facts_add_options(facts, scope, object, scope == FL_SCOPE_REGION ? "sky" : NULL);
+    fl_facts_add_options(facts, scope, object, scope == FL_SCOPE_REGION ? "sky" : NULL, true);
     return facts;
 }
 

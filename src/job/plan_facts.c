@@ -1,7 +1,6 @@
 #include "job/plan.h"
 #include "job/region_plan.h"
 
-#include "base/build_id.h"
 #include "io/pattern.h"
 #include "io/picture_file.h"
 #include <string.h>
@@ -68,9 +67,8 @@ static void add_pattern(FlFacts *facts, const FlShapes *shapes, FlInputs *inputs
 
 /* ---- the whole plan -------------------------------------------------------------------------- */
 
-/* Those that decide frames, or those that decide paint. */
-static void add_values(FlFacts *facts, FlOptionScope scope, const void *object, const char *region,
-                       bool of_frames)
+void fl_facts_add_options(FlFacts *facts, FlOptionScope scope, const void *object,
+                          const char *region, bool of_frames)
 {
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *option = fl_option_at(i);
@@ -85,12 +83,6 @@ static void add_values(FlFacts *facts, FlOptionScope scope, const void *object, 
             region ? g_strdup_printf("%s of region %s", option->name, region) : NULL;
         fl_facts_add(facts, name ? name : option->name, base ? base : value);
     }
-}
-
-void fl_facts_add_options(FlFacts *facts, FlOptionScope scope, const void *object,
-                          const char *region)
-{
-    add_values(facts, scope, object, region, true);
 }
 
 /* The pictures of a region's control maps: of all, or of those that decide its paint. */
@@ -118,7 +110,7 @@ static void add_options(FlFacts *facts, const FlPlan *plan)
     fl_facts_add_number(facts, "the width", shapes->page_width);
     fl_facts_add_number(facts, "the height", shapes->page_height);
     fl_facts_add_number(facts, "the hold", shapes->hold);
-    fl_facts_add_options(facts, FL_SCOPE_RENDER, &plan->options, NULL);
+    fl_facts_add_options(facts, FL_SCOPE_RENDER, &plan->options, NULL, true);
 }
 
 static void add_painted(FlFacts *facts, const FlPlan *plan)
@@ -126,7 +118,7 @@ static void add_painted(FlFacts *facts, const FlPlan *plan)
     const FlShapes *shapes = &plan->shapes;
     for (int p = 0; p < shapes->n_painted; p++) {
         const FlRegionPlan *painted = &shapes->painted[p];
-        fl_facts_add_options(facts, FL_SCOPE_REGION, &painted->settings, painted->name);
+        fl_facts_add_options(facts, FL_SCOPE_REGION, &painted->settings, painted->name, true);
         add_maps(facts, painted, plan->inputs, true);
         if (painted->flow_files)
             add_pattern(facts, shapes, plan->inputs, painted->flow_files, painted->name);
@@ -195,7 +187,7 @@ FlFacts *fl_plan_facts(const FlPlan *plan)
 /* The build id stands for the code of the method. */
 static void add_method(FlFacts *facts, const FlShapes *shapes, const FlRegionPlan *painted)
 {
-    fl_facts_add(facts, "the build of fluidy-svg", fl_build_id());
+    fl_facts_add_build(facts);
     fl_facts_add_versions(facts);
     fl_facts_add(facts, "the engine", painted->engine->name);
     fl_facts_add_number(facts, "the seed", (double)shapes->seed);
@@ -232,7 +224,7 @@ FlFacts *fl_region_facts(const FlShapes *shapes, const FlRegionPlan *region, FlI
     if (region->settings.keyed || region->styles || region->map[FL_MAP_CARRY] ||
         region->map[FL_MAP_STRENGTH])
         add_numbers(facts, shapes->drawing);
-    add_values(facts, FL_SCOPE_REGION, &region->settings, NULL, false);
+    fl_facts_add_options(facts, FL_SCOPE_REGION, &region->settings, NULL, false);
     add_style(facts, inputs, region->style->path);
     add_maps(facts, region, inputs, false);
     return facts;
@@ -249,7 +241,7 @@ FlFacts *fl_plan_facts_of_paint(const FlPlan *plan)
         add_earlier(facts, plan);
     add_drawings(facts, plan);
     add_numbers(facts, shapes->drawing); // by which layers of one file differ
-    add_values(facts, FL_SCOPE_RENDER, &plan->options, NULL, false);
+    fl_facts_add_options(facts, FL_SCOPE_RENDER, &plan->options, NULL, false);
     fl_facts_add_number(facts, "the hold", shapes->hold);
     add_edges(facts, shapes);
     for (int r = 0; r < fl_drawing_regions(shapes->drawing); r++)
@@ -290,7 +282,7 @@ FlDigest fl_request_digest(const FlPlan *plan, const FlSequence *sequence)
 {
     g_autoptr(FlFacts) facts = fl_facts_new();
     g_autofree char *folder = g_get_current_dir(); // relative names begin here
-    fl_facts_add(facts, "the build of fluidy-svg", fl_build_id());
+    fl_facts_add_build(facts);
     fl_facts_add_versions(facts);
     fl_facts_add(facts, "the working directory", folder);
     fl_facts_add(facts, "the format", plan->out.format->name);

@@ -119,11 +119,11 @@ bool fl_shapes_rasterise(FlShapes *shapes, const FlCaller *caller, GError **erro
 bool fl_shapes_find_hidden(FlShapes *shapes, const FlCaller *caller, GError **error);
 
 /**
- * Adds every option of the table that decides frames, by its value. object: the
- * struct of the scope; region: its name, or NULL.
+ * Adds every option of the table that decides frames, or only those that decide paint, by its
+ * value. object: the struct of the scope; region: its name, or NULL.
  */
 void fl_facts_add_options(FlFacts *facts, FlOptionScope scope, const void *object,
-                          const char *region);
+                          const char *region, bool of_frames);
 
 /**
  * All that decides a region's paint but its guides: engine, settings, style, seed, sizes and this

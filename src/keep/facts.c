@@ -2,6 +2,8 @@
 
 #include "config.h"
 #include <cairo.h>
+#include <dlfcn.h>
+#include <fluidy/fluidy.h>
 #include <librsvg/rsvg.h>
 #include <stdbool.h>
 #include <string.h>
@@ -58,6 +60,36 @@ void fl_facts_add_versions(FlFacts *facts)
     fl_facts_add(facts, "the version of librsvg", rsvg);
     fl_facts_add(facts, "the version of cairo", cairo_version_string());
     fl_facts_add_number(facts, "the byte order", G_BYTE_ORDER);
+}
+
+const char *fl_version(void)
+{
+    return FL_VERSION;
+}
+
+/* The file of the library; of a program that holds it, where the system tells that one. */
+static GMappedFile *map_code(void)
+{
+    Dl_info own;
+    GMappedFile *file = dladdr((const void *)(uintptr_t)fl_facts_add_build, &own)
+                            ? g_mapped_file_new(own.dli_fname, FALSE, NULL)
+                            : NULL;
+    return file ? file : g_mapped_file_new("/proc/self/exe", FALSE, NULL);
+}
+
+void fl_facts_add_build(FlFacts *facts)
+{
+    static char *id;
+    if (!id) {
+        FlDigest digest = {0};
+        g_autoptr(GMappedFile) file = map_code();
+        if (file)
+            fl_digest_add(&digest, g_mapped_file_get_contents(file),
+                          g_mapped_file_get_length(file));
+        id = g_strdup_printf(FL_VERSION " %016" G_GINT64_MODIFIER "x%016" G_GINT64_MODIFIER "x",
+                             digest.a, digest.b);
+    }
+    fl_facts_add(facts, "the build of fluidy-svg", id);
 }
 
 void fl_facts_append(FlFacts *facts, const FlFacts *other)

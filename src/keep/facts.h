@@ -28,6 +28,10 @@ void fl_facts_add_digest(FlFacts *facts, const char *name, FlDigest digest);
 /** Adds versions of this program, librsvg and cairo, and the byte order. */
 void fl_facts_add_versions(FlFacts *facts);
 
+/** Adds the version and a digest of the library's file: programs in which they are equal have the
+ * same code. The first call must not run beside another. */
+void fl_facts_add_build(FlFacts *facts);
+
 /** Adds all other facts; NULL: none. */
 void fl_facts_append(FlFacts *facts, const FlFacts *other);
 
