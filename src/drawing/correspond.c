@@ -73,6 +73,8 @@ static bool fit_line(const FlSamples *s, FlAffine *back)
 /** The affine map from now to before that fits best. Returns: true if the samples tell one. */
 static bool fit(const FlSamples *s, FlAffine *back)
 {
+    if (s->n == 0)
+        return false;
     const FlPoint a = fl_mean_point(s->before, s->n), b = fl_mean_point(s->now, s->n);
     double xx = 0, xy = 0, yy = 0, px = 0, py = 0, qx = 0, qy = 0;
     for (int i = 0; i < s->n; i++) {
