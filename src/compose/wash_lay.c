@@ -9,7 +9,7 @@
 #include <math.h>
 
 #define LOADS 256     // of the brush, that repeat
-#define HAIRS 1024    // half px of a line of hairs, that repeats
+#define HAIRS 1024    // in a line, half a px each, that repeats
 #define TONE_ONE 256  // steps of ln of a factor
 #define TONE_LEAST -2 // at 64 * 255 a factor is one, and 4 is the most
 #define TONES (TONE_ONE * 27 / 8)

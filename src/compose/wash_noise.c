@@ -87,10 +87,11 @@ static void find_tide(const FlWash *wash, const Places *at, float *away)
 
 #define BLOOM_CELL 260 // one in this square at most
 
-/* A drop that ran into the damp wash, or -1. */
+/* The drop of a square, as seen from a point: of water, of paint, a spot from which some was
+ * lifted, or none, by its kind. */
 typedef struct Drop {
     float radius, dx, dy; // of the point from its middle
-    float kind;           // 0..1
+    float kind;           // 0..1; below .25 water, from .3 paint, from .55 to .8 lifted
 } Drop;
 
 static Drop drop_at(const FlWash *wash, const Places *at, int i)
@@ -121,7 +122,7 @@ static void find_bloom(const FlWash *wash, const Places *at, float *away)
     }
 }
 
-/* The distance from the front that is next, and the one with blooms over that without. */
+/* The distance from the nearest front, and the share by which it is that of a bloom. */
 static void find_front(const FlWash *wash, const Places *at, float *away, float *bloom)
 {
     find_tide(wash, at, away);
@@ -199,7 +200,7 @@ static void find_fronts(const FlWash *wash, const Places *at, Values values)
     }
 }
 
-/* Accidents: a charged drop of paint, or a spot from which paint was lifted. */
+/* Drops of paint that ran into the wash, and spots from which some was lifted. */
 static void add_accidents(const FlWash *wash, const Places *at, Values values)
 {
     static const float lobes[2] = {40, 26};
