@@ -343,6 +343,8 @@ static bool retrieve(FlLazy *lazy, int l, uint64_t key, FlLevelStats *stats, GEr
     const FlParams *params = lazy->params;
     stats->energy = 0;
     for (int s = 0; s < 2; s++) {
+        const bool border = s == 0 && source->segments.n[1] > 0;
+        const bool freely = border ? params->w_uni < 1 : params->w_uni <= 0;
         const FlRetrieval in = {.source = source->picture,
                                 .target = level->picture,
                                 .sources = source->segments.place[s],
@@ -350,7 +352,7 @@ static bool retrieve(FlLazy *lazy, int l, uint64_t key, FlLevelStats *stats, GEr
                                 .n_sources = source->segments.n[s],
                                 .n_targets = level->segments.n[s],
                                 .turns = params->rotate,
-                                .uniform = params->w_uni <= 0       ? FL_UNIFORM_OFF
+                                .uniform = freely                   ? FL_UNIFORM_OFF
                                            : params->uniform_blocks ? FL_UNIFORM_AUTO
                                                                     : FL_UNIFORM_PATCH,
                                 .sweeps = MAX(params->finest_sweeps, 1),
