@@ -200,9 +200,12 @@ static void contrast_stays_where_use_is_equal_and_goes_where_it_is_not(void)
 {
     const double strict = spread_after("lazyfluids", "1", 20);
     const double off = spread_after("lazyfluids", "0", 20),
+                 border = spread_after("lazyfluids", "0.5", 20),
                  sharp = spread_after("lazyfluids-steady", "1", 20);
-    g_test_message("contrast against the exemplar: strict %.2f, nearest %.2f, sharp vote %.2f",
-                   strict, off, sharp);
+    g_test_message("contrast against the exemplar: strict %.2f, nearest %.2f, nearest along the "
+                   "border %.2f, sharp vote %.2f",
+                   strict, off, border, sharp);
+    g_assert_cmpfloat(border, >, .8); // what has no border is strict
     g_assert_cmpfloat(sharp, >, .9);
     g_assert_cmpfloat(strict, >, .8);
     g_assert_cmpfloat(off, <, .7 * strict);
