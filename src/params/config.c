@@ -341,8 +341,11 @@ static bool read_file(FlConfig *config, const FlRenderOptions *caller, const cha
     g_ptr_array_add(config->files, g_strdup(path));
     if (caller && caller->reads)
         caller->reads(path, caller->data);
-    if (!text && fl_look_named(path) && !(text = of_look = open_look(&reader, error)))
-        return false;
+    if (!text && fl_look_named(path)) {
+        if (!(of_look = open_look(&reader, error)))
+            return false;
+        text = of_look;
+    }
     const FlKeyReader calls = {
         read_section, read_entry, &reader, FL_ERROR_USAGE, included ? NULL : &wait, text};
     return fl_key_file_read(path, &calls, error) &&
