@@ -139,6 +139,12 @@ for line, words in (("paper = /etc/passwd", "outside of the look"),
 for line in ("style = /tmp/x", "style = 01@1 ../x@9", "map-front = /tmp/x.png"):
     refused("a config with " + line, [("look.conf", conf.replace("style = 01", line))],
             "outside of the look")
+small = os.path.join(fixtures, "style-small")
+refused("a style that names a map", [("look.conf", conf.replace("01", "styles/1-s"))] +
+        [("styles/1-s/" + name, open(os.path.join(small, name), "rb").read())
+         for name in sorted(f"frames/{k}" for k in os.listdir(os.path.join(small, "frames")))] +
+        [("styles/1-s/style.ini", "[region]\nmap-front = /etc/passwd\n")],
+        "style.ini:2: map-front: a style does not say that")
 refused("a config that is wrong", [("look.conf", conf + "stile = 3\n")], "bad.fluidy:5: ")
 
 with open("linked.fluidy", "wb") as file:

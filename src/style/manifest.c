@@ -51,10 +51,9 @@ const FlKeyTable fl_wash_table = {wash_keys, G_N_ELEMENTS(wash_keys)};
 /* A setting of regions that have this style. */
 static bool take_setting(void *settings, const char *name, const char *value, GError **error)
 {
-    static const char *const others[] = {"style",       "tile",       "fluid",
-                                         "passthrough", "merge-with", NULL};
+    static const char *const others[] = {"style", "fluid", "passthrough", "merge-with", NULL};
     g_autoptr(GError) reason = NULL;
-    if (g_strv_contains(others, name))
+    if (g_strv_contains(others, name) || g_str_has_prefix(name, FL_MAP_OPTION)) // files of a film
         return fl_fail(error, FL_ERROR_STYLE, "%s: a style does not say that of its regions", name);
     return fl_overrides_add(settings, name, value, NULL, &reason) ||
            fl_fail(error, FL_ERROR_STYLE, "%s", reason->message);
