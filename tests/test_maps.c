@@ -88,6 +88,9 @@ static void a_map_without_pictures_is_refused(void)
     g_assert_null(fl_control_map_open(path, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
     g_clear_error(&error);
+    g_assert_null(fl_control_map_open(folder, &error)); // before a frame is painted
+    g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
+    g_clear_error(&error);
     g_autoptr(FlControlMap) map = fl_control_map_open(bad, NULL);
     g_assert_false(fl_control_map_read(map, 1, (FlRect){0, 0, 1, 1}, 1, 1, &value, &error));
     g_assert_nonnull(strstr(error->message, text)); // the file of the frame

@@ -29,7 +29,7 @@ FlControlMap *fl_control_map_open(const char *pattern, GError **error)
                                                     : fl_series_of_file(pattern);
     if (!series)
         return NULL;
-    if (!g_file_test(series->path[0], G_FILE_TEST_EXISTS)) {
+    if (!g_file_test(series->path[0], G_FILE_TEST_IS_REGULAR)) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
                     "%s: there is no such file; expected a picture, or a pattern such as "
                     "map_%%04d.png",
