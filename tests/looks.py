@@ -89,7 +89,8 @@ with zipfile.ZipFile("my.fluidy") as archive:
     names, conf = archive.namelist(), archive.read("look.conf").decode()
     thumbnail = archive.read("thumbnail.png")[:8]
 report("a look has a config, a style and a thumbnail", wanted and saved == 0 and
-       thumbnail == b"\x89PNG\r\n\x1a\n" and "styles/1-small/style.ini" in names, text + more)
+       thumbnail == b"\x89PNG\r\n\x1a\n" and "styles/1-small/style.ini" in names and
+       "saved the look: my.fluidy" in more and "painted" not in more, text + more)
 report("a look says how to paint, and not where", "wash = 0.7" in conf and "stain = 0.4" in conf and
        "wash = 0.5" not in conf and "output" not in conf and "include" not in conf, conf)
 shutil.rmtree("own")

@@ -69,7 +69,6 @@ static void selectors_choose_elements(void)
                                          "path:only-of-type",
                                          "path:first-of-type",
                                          "*|path",
-                                         "*|path",
                                          ":nth-child(1 of path)",
                                          ":is(:nonsense, path)",
                                          "g:not(.x) > .k",

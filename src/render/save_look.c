@@ -168,6 +168,7 @@ static bool pack(Packing *packing, const FlConfig *config, const FlRenderOptions
 {
     FlRenderOptions small = *options, whole = *options;
     small.width = THUMBNAIL_PX, small.height = 0, small.scale = 0;
+    small.note = NULL; // the thumbnail's paint is no frame of a file
     if (!small.frames)
         small.frames = "~1";
     for (int i = 0; i < fl_option_count(); i++) { // without the defaults
