@@ -10,7 +10,7 @@ typedef enum FlWashPlane {
     FL_WASH_TONE,   // ln of the amount: light and shadow side, pools
     FL_WASH_HUE,    // balance of the pigments, without lines
     FL_WASH_PASS,   // place across the brush: each whole number is a pass
-    FL_WASH_DRY,    // -1..1: of the brush; where it is dry, edges are found and bristles show
+    FL_WASH_DRY,    // -1..1: of the brush; where it is dry, edges are found
     FL_WASH_LINES,  // strength of passes, 0..1
     FL_WASH_FRONT,  // distance from where water stopped, px of the page; below 0 it was flooded
     FL_WASH_FRONTS, // strength of fronts, 0..2

@@ -19,7 +19,7 @@ typedef struct Brush {
     const FlWash *wash;
     float white;
     float load[LOADS + 1]; // of each pass, -1..1
-    float hair[HAIRS];     // of the brush, and of a front, 0..1
+    float hair[HAIRS];     // along a front, 0..1
     uint16_t factor[TONES];
 } Brush;
 
@@ -73,14 +73,6 @@ static inline float front_at(const Brush *brush, const Slow slow)
     return strength * (.5f * fl_smooth(1 - past / tooth) + .5f * fl_decay(past * .08f));
 }
 
-/* Bristles of a dry brush leave pale streaks here and there. */
-static inline float streak_at(const Brush *brush, const Slow slow)
-{
-    const float dry = slow[FL_WASH_DRY] - .38f;
-    const float hair = hair_at(brush, 1.7f * slow[FL_WASH_PASS] * brush->wash->brush_px);
-    return dry > 0 && hair > .64f ? fl_smooth(3 * dry) * (hair - .64f) : 0;
-}
-
 /* From -.5 on the side that water flooded to .5 beyond its front. */
 static inline float side_at(const Slow slow)
 {
@@ -104,8 +96,8 @@ static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
     const float load = brush->load[k] + (brush->load[k + 1] - brush->load[k]) * next;
     const float lines = slow[FL_WASH_LINES], front = front_at(brush, slow);
     *hue = slow[FL_WASH_HUE] + .4f * lines * load + .3f * front;
-    return slow[FL_WASH_TONE] + style->passes * lines * (.27f * load - streak_at(brush, slow)) +
-           .36f * front + .3f * MAX(style->tide, style->blooms) * lines * side_at(slow);
+    return slow[FL_WASH_TONE] + .27f * style->passes * lines * load + .36f * front +
+           .3f * MAX(style->tide, style->blooms) * lines * side_at(slow);
 }
 
 void fl_wash_find_tones(const FlWash *wash, float *tones, float *hues)

@@ -87,11 +87,10 @@ static void find_tide(const FlWash *wash, const Places *at, float *away)
 
 #define BLOOM_CELL 260 // one in this square at most
 
-/* The drop of a square, as seen from a point: of water, of paint, a spot from which some was
- * lifted, or none, by its kind. */
+/* The drop of a square, as seen from a point: of water, of paint, or none, by its kind. */
 typedef struct Drop {
     float radius, dx, dy; // of the point from its middle
-    float kind;           // 0..1; below .25 water, from .3 paint, from .55 to .8 lifted
+    float kind;           // 0..1; below .25 water, from .3 to .55 paint
 } Drop;
 
 static Drop drop_at(const FlWash *wash, const Places *at, int i)
@@ -200,19 +199,19 @@ static void find_fronts(const FlWash *wash, const Places *at, Values values)
     }
 }
 
-/* Drops of paint that ran into the wash, and spots from which some was lifted. */
-static void add_accidents(const FlWash *wash, const Places *at, Values values)
+/* Drops of paint that ran into the wash. */
+static void add_drops(const FlWash *wash, const Places *at, Values values)
 {
     static const float lobes[2] = {40, 26};
     float bend[FL_NOISE_ROW];
     noise_at(fl_key(wash->key, KEY_BLOOM + 100), at, lobes, 0, 2, .6f, bend);
     for (int i = 0; i < at->n; i++) {
         const Drop drop = drop_at(wash, at, i);
-        const float radius = drop.kind < .55f ? .75f * drop.radius : .3f * drop.radius;
-        const float far =
-            sqrtf(.7f * drop.dx * drop.dx + drop.dy * drop.dy) / radius + .6f * bend[i];
-        const float part = drop.kind > .3f && drop.kind < .8f ? fl_smooth(1.2f - far) : 0;
-        const float paint = wash->style.blooms * (drop.kind < .55f ? part : -part);
+        const float far = sqrtf(1.2f * drop.dx * drop.dx + 1.8f * drop.dy * drop.dy) / drop.radius +
+                          .6f * bend[i];
+        if (drop.kind < .3f || drop.kind > .55f)
+            continue;
+        const float paint = wash->style.blooms * fl_smooth(1.2f - far);
         values[FL_WASH_TONE][i] += 1.2f * paint;
         values[FL_WASH_HUE][i] += paint;
     }
@@ -226,7 +225,7 @@ static void find_values(const FlWashField *field, const Places *at, Values value
     noise_at(fl_key(wash->key, KEY_HUE), at, hue, .5f, 3, .55f, values[FL_WASH_HUE]);
     find_passes(field, at, values);
     find_fronts(wash, at, values);
-    add_accidents(wash, at, values);
+    add_drops(wash, at, values);
 }
 
 static bool is_mixed(int plane)
