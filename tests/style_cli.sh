@@ -134,7 +134,7 @@ if command -v ffmpeg >/dev/null; then
     grep -q 'only one frame, so the paint will not flow' err
     result $? 'with the warning that it will not flow'
     ffmpeg -v error -f lavfi -i sine=d=0.1 -c:a pcm_s16le sound.wav
-    refuses 'sound is no paint' 1 'sound.wav: has no video stream' \
+    refuses 'sound is no paint' 1 'sound.wav: has no pictures' \
         import sound.wav -o sound
     printf 'ffconcat version 1.0\nfile paint.mkv\n' >list.mkv
     echo '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"/>' >x.svg
