@@ -17,7 +17,7 @@ typedef struct FlComposite {
     uint8_t *sheet;       // of paper, fl_paper_sheet_picture(), if layers are stored; else NULL
     uint8_t *rgba;        // width * height * 4 straight sRGBA
     uint16_t *rgba16;     // NULL unless asked for
-    float *vectors;       // FlSinkFrame.vectors, filled by who asks for them; else NULL
+    float *vectors;       // FlSinkFrame.vectors; NULL unless they are asked for
 } FlComposite;
 
 /**

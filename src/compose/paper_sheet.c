@@ -4,7 +4,6 @@
 #include "base/curves.h"
 #include "base/error.h"
 #include "base/page.h"
-#include "base/picture.h"
 #include "base/rng.h"
 #include "base/row_kernels.h"
 #include "guides/blur.h"

@@ -14,7 +14,7 @@ typedef enum FlWashPlane {
     FL_WASH_LINES,  // strength of passes, 0..1
     FL_WASH_FRONT,  // distance from where water stopped, px of the page; below 0 it was flooded
     FL_WASH_FRONTS, // strength of fronts, 0..2
-    FL_WASH_ALONG,  // place along the front that is next, px of the page
+    FL_WASH_ALONG,  // place along the nearest front, px of the page
     FL_WASH_CALM,   // share of the recording's unevenness that is lost, 0..1
     FL_WASH_PLANES,
 } FlWashPlane;

@@ -133,7 +133,7 @@ static void find_front(const FlWash *wash, const Places *at, float *away, float 
     }
 }
 
-/* Moves points straight to the front, as far as it is near, and makes its distance one in px. */
+/* Moves points straight to the front, at most 40 px, and turns distances by noise into px. */
 static void move_to_front(const FlWash *wash, const Places *at, float *away, Places *front)
 {
     float beside[2][FL_NOISE_ROW], bloom[FL_NOISE_ROW];
@@ -154,7 +154,7 @@ static void move_to_front(const FlWash *wash, const Places *at, float *away, Pla
 
 #define NEAR_PX 100 // of a front: where its shape matters
 
-/* The points that are near a front, and which they are. */
+/* Finds the points that are near a front, and their indices. */
 static void find_near(const Places *at, const float *away, Places *near, int *which)
 {
     near->n = 0;

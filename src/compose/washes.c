@@ -213,7 +213,7 @@ static FlWashStyle style_of_region(const FlComposeInput *input, int first)
     return mean;
 }
 
-static bool has_map(const FlPaintedRegion *painted, FlMapped dial, const FlPaintedRegion *other)
+static bool same_map(const FlPaintedRegion *painted, FlMapped dial, const FlPaintedRegion *other)
 {
     return (painted->map ? painted->map[dial] : NULL) == (other->map ? other->map[dial] : NULL);
 }
@@ -235,8 +235,8 @@ static int wash_of_region(FlWashes *washes, const FlComposeInput *input, int reg
     const char *style = (const char *)&wash.style; // floats alone
     for (int w = 0; w < washes->n; w++)
         if (washes->wash[w].key == wash.key &&
-            has_map(painted, FL_MAP_WASH, washes->wash[w].painted) &&
-            has_map(painted, FL_MAP_CALM, washes->wash[w].painted) &&
+            same_map(painted, FL_MAP_WASH, washes->wash[w].painted) &&
+            same_map(painted, FL_MAP_CALM, washes->wash[w].painted) &&
             memcmp((const char *)&washes->wash[w].style, style, sizeof wash.style) == 0)
             return w;
     washes->wash = g_renew(FlWash, washes->wash, washes->n + 1);

@@ -272,8 +272,8 @@ static void push_by_contour(FlFluid *f)
     }
 }
 
-/** Brings in what parts grow by: in the share `emit` through contour that rests, the rest evenly.
- * Parts that are open to the page take it from there. */
+/** Brings in what parts grow by: in the share `emit`, but no faster than FASTEST_IN, through
+ * contour that rests; the rest evenly. Parts that are open to the page take it from there. */
 static void let_in_growth(FlFluid *f)
 {
     for (int c = 0; c < f->n; c++) {

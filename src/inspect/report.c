@@ -1,6 +1,5 @@
 #include "inspect/report.h"
 
-#include "base/alloc.h"
 #include "inspect/exemplar_use.h"
 #include "inspect/flicker.h"
 #include "inspect/followed_point.h"

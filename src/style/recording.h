@@ -2,7 +2,6 @@
 #ifndef FLUIDY_STYLE_RECORDING_H
 #define FLUIDY_STYLE_RECORDING_H
 
-#include "base/picture.h"
 #include "io/picture_series.h"
 #include <fluidy/style.h>
 

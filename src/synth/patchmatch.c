@@ -1,6 +1,5 @@
 #include "synth/patchmatch.h"
 
-#include "base/rng.h"
 #include "base/schedule.h"
 #include "synth/tile_search.h"
 #include <sched.h>

@@ -3,7 +3,6 @@
 #define FLUIDY_SYNTH_REST_H
 
 #include "guides/guides.h"
-#include "synth/synth_state.h"
 
 #define FL_REST_DEEP 2.5f // borders up to which the depth counts
 #define FL_REST_STEPS 127 // of that depth

@@ -14,7 +14,7 @@ typedef struct FlTransportProblem {
 } FlTransportProblem;
 
 /**
- * Solves from a zero potential, coarse grids and levels first; `effort` scales the number of
+ * Solves from a zero potential, coarse grids first; `effort` scales the number of
  * iterations (1: 260). progress may be NULL.
  *
  * potential: made by the caller in the problem's size. Returns: false with FL_ERROR_NO_MEMORY or

@@ -4,7 +4,6 @@
 
 #include "base/alloc.h"
 #include "base/curves.h"
-#include "base/error.h"
 #include "base/rng.h"
 #include "cover/cover_map.h"
 #include "guides/distance.h"

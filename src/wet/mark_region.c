@@ -239,8 +239,9 @@ static FlAffine within(const FlAffine *map, FlRect rect)
     return own;
 }
 
-/** The shares of a region's dials at each cell. */
-static bool read_maps(const FlWet *wet, FlMarker *marker, int frame, Planes *planes, GError **error)
+/** Adds the shares at each cell to a region's dials: planes keep them. */
+static bool read_maps(const FlWet *wet, const FlMarker *marker, int frame, Planes *planes,
+                      FlWetDials *dials, GError **error)
 {
     FlControlMap *const *map = marker->plan->map;
     const FlShapes *shapes = wet->shapes;
@@ -251,7 +252,7 @@ static bool read_maps(const FlWet *wet, FlMarker *marker, int frame, Planes *pla
                                           &planes->front, error) &&
                       fl_control_map_make(map[FL_MAP_STAIN], number, planes->rect, width, height,
                                           &planes->stain, error);
-    marker->dials.front_map = planes->front, marker->dials.stain_map = planes->stain;
+    dials->front_map = planes->front, dials->stain_map = planes->stain;
     return made;
 }
 
@@ -261,9 +262,10 @@ static bool mark_moving(const FlWetStep *step, FlMarker *marker, int before, int
     const FlWet *wet = step->wet;
     g_auto(Planes) planes = {0};
     g_auto(FlMovingEdge) edge = {0};
+    FlWetDials dials = marker->dials;
     if (!planes_init(&planes, marked_part(wet, marker->plan, before, now), error) ||
         !read_planes(step, marker, before, now, moves, &planes, error) ||
-        !read_maps(wet, marker, now, &planes, error))
+        !read_maps(wet, marker, now, &planes, &dials, error))
         return false;
     FlWetShape shape = {.rect = planes.rect,
                         .page = wet->sheet.page,
@@ -284,11 +286,10 @@ static bool mark_moving(const FlWetStep *step, FlMarker *marker, int before, int
     marker->partner = MAX(known, fl_ease(0.02f, 0.2f, shape.overlap));
     fl_marks_lose_fronts(&shape, &edge, marker->fronts, marker->stains);
     g_array_set_size(marker->fronts, 0);
-    fl_marks_add_stain(&shape, &edge, &around, &marker->dials, marker->stains, marker->fronts);
+    fl_marks_add_stain(&shape, &edge, &around, &dials, marker->stains, marker->fronts);
     marker->rests = !moves && edge.fastest < 0.02f * wet->sheet.px;
-    const bool marked =
-        marker->dials.front <= 0 || fl_marks_add_front(&shape, &edge, &around, &marker->dials,
-                                                       &wet->sheet, marker->fronts, error);
+    const bool marked = dials.front <= 0 || fl_marks_add_front(&shape, &edge, &around, &dials,
+                                                               &wet->sheet, marker->fronts, error);
     const FlMovingEdge before_edge = marker->before;
     marker->before = edge, edge = before_edge;
     return marked;

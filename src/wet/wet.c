@@ -158,13 +158,19 @@ void fl_wet_place_cells(FlWet *wet)
     wet->sheet.shift_y = (int)floorf(c * wet->camera_y + 0.5f);
 }
 
+/** Says if a map of the paper moves it without turning or scaling it. */
+static bool only_pans(const FlAffine *map)
+{
+    return map->xx == 1 && map->yy == 1 && map->xy == 0 && map->yx == 0;
+}
+
 /** A camera that pans moves the sheet by whole cells, and shows these where the rest has brought
  * them. */
 static bool move_sheet(FlWet *wet, const FlAffine *came, GError **error)
 {
     FlAffine from = *came;
     bool moved;
-    if (fl_wet_only_pans(came)) {
+    if (only_pans(came)) {
         wet->camera_x -= (float)came->x0, wet->camera_y -= (float)came->y0;
         const float dx = floorf(wet->camera_x + 0.5f), dy = floorf(wet->camera_y + 0.5f);
         wet->camera_x -= dx, wet->camera_y -= dy;
@@ -185,7 +191,7 @@ static bool do_step(FlWet *wet, int before, int frame, GError **error)
         !fl_wet_follow_camera(wet, before, frame, &step.came, error) ||
         !move_sheet(wet, &step.came, error))
         return false;
-    step.moved = !fl_wet_only_pans(&step.came) || step.came.x0 != 0 || step.came.y0 != 0;
+    step.moved = !only_pans(&step.came) || step.came.x0 != 0 || step.came.y0 != 0;
     fl_wet_sheet_dry(&wet->sheet, step.frames);
     return mark_all(&step, error);
 }

@@ -241,8 +241,8 @@ static float frayed_to(const FlWetSheet *sheet, float hollow, float spot)
     return FRAYED_PX * sheet->px * (1 - 0.3f * hollow - 0.7f * spot);
 }
 
-/** The share of an earlier stain that paint leaves which passes: this breaks up towards its sides,
- * and the stain is seen between its pieces. */
+/** The share of an earlier stain that passing paint leaves: the new stain breaks up towards its
+ * sides, and the earlier one is seen between its pieces. */
 static float seen_between(const FlWetSheet *sheet, const FlStainMark *mark, FlPaperGrains grain,
                           const FlWetCell *cell)
 {
@@ -251,7 +251,8 @@ static float seen_between(const FlWetSheet *sheet, const FlStainMark *mark, FlPa
            fl_ease(0, 2 * sheet->px, cell->depth - mark->depth);
 }
 
-/** Paint that passes takes up the stain in its way. A cell has one stain, the stronger. */
+/** Paint that passes takes up the stain in its way. A cell has one stain: the stronger, into which
+ * the weaker turns as their strengths meet. */
 static void stain_cell(const FlWetSheet *sheet, const FlFrontStyle *style, const FlStainMark *mark,
                        FlWetCell *cell)
 {
@@ -263,9 +264,9 @@ static void stain_cell(const FlWetSheet *sheet, const FlFrontStyle *style, const
     cell->front *= 1 - mark->lost;
     cell->stain *= stays, cell->film *= stays;
     const float old = cell->depth > 0 ? cell->stain * left_of(sheet, cell->age, hollow) : 0;
-    const float new = stain *left_of(sheet, mark->age, hollow);
-    const float own =
-        (1 - seen * MIN(4 * old / MAX(new, 1e-9f), 1)) * fl_ease(0.6f, 1, new / MAX(old, 1e-9f));
+    const float fresh = stain * left_of(sheet, mark->age, hollow);
+    const float own = (1 - seen * MIN(4 * old / MAX(fresh, 1e-9f), 1)) *
+                      fl_ease(0.6f, 1, fresh / MAX(old, 1e-9f));
     if (own <= 0 || (mark->depth <= 0 && old > 0))
         return;
     cell->stain *= 1 - own, cell->film *= 1 - own;

@@ -62,12 +62,6 @@ void fl_wet_sheet_clear(FlWetSheet *sheet);
 
 FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t cell);
 
-/** Says if a map of the paper moves it without turning or scaling it. */
-static inline bool fl_wet_only_pans(const FlAffine *map)
-{
-    return map->xx == 1 && map->yy == 1 && map->xy == 0 && map->yx == 0;
-}
-
 /** Moves the paper with all marks, by whole cells. */
 bool fl_wet_sheet_move(FlWetSheet *sheet, int dx, int dy, GError **error);
 
