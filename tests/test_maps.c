@@ -2,8 +2,10 @@
 #include "base/picture.h"
 #include "io/control_map.h"
 #include "io/png.h"
+#include "keep/inputs.h"
 #include "scratch.h"
 #include <fluidy/fluidy.h>
+#include <glib/gstdio.h>
 #include <string.h>
 
 static char *write_map(const char *folder, const char *name, int width, int height,
@@ -216,6 +218,38 @@ static void a_changed_map_is_noticed(void)
     g_assert_error(error, FL_ERROR, FL_ERROR_CHANGED);
 }
 
+/* A picture with another number fades at other frames. */
+static void a_renamed_map_is_noticed(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *first = write_map(folder, "map_01.png", 3, 3, black);
+    g_autofree char *last = write_map(folder, "map_02.png", 3, 3, white);
+    g_autofree char *later = g_build_filename(folder, "map_03.png", NULL);
+    g_autofree char *pattern = g_build_filename(folder, "map_%02d.png", NULL);
+    g_autoptr(GError) error = NULL;
+    draw(folder);
+    g_autoptr(FlPicture) painted = paint(folder, "map-stain", pattern, false, &error);
+    g_autoptr(FlPicture) verified = paint(folder, "map-stain", pattern, true, &error);
+    g_assert_no_error(error);
+    const FlDigest names = fl_file_digest(pattern);
+    g_assert_cmpint(g_rename(last, later), ==, 0);
+    g_assert_false(fl_digest_is_same(names, fl_file_digest(pattern)));
+    g_autoptr(FlPicture) changed = paint(folder, "map-stain", pattern, true, &error);
+    g_assert_error(error, FL_ERROR, FL_ERROR_CHANGED);
+}
+
+/* Regions without a folder have no map, as those without a picture in it. */
+static void maps_of_regions_may_be_in_folders(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *pattern = g_build_filename(folder, "{region}", "m_%02d.png", NULL);
+    g_autoptr(GError) error = NULL;
+    draw(folder);
+    g_autoptr(FlPicture) none = paint(folder, "map-stain", pattern, false, &error);
+    g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
+    g_assert_nonnull(strstr(error->message, "no region has such a picture"));
+}
+
 int main(int argc, char **argv)
 {
     g_setenv("G_TEST_SRCDIR", g_getenv("FLUIDY_FIXTURES"), true);
@@ -228,5 +262,7 @@ int main(int argc, char **argv)
     TEST(a_black_map_is_a_dial_of_0);
     TEST(maps_of_regions_may_be_missing_for_some);
     TEST(a_changed_map_is_noticed);
+    TEST(a_renamed_map_is_noticed);
+    TEST(maps_of_regions_may_be_in_folders);
     return g_test_run();
 }

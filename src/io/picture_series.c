@@ -95,8 +95,9 @@ static GArray *list_names(const char *folder, const FlPattern *wanted, const cha
     g_autoptr(GError) below = NULL;
     g_autoptr(GDir) dir = g_dir_open(folder, 0, &below);
     if (!dir) {
-        g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s: cannot be read: %s", folder,
-                    below->message);
+        const bool no_match = wanted && g_error_matches(below, G_FILE_ERROR, G_FILE_ERROR_NOENT);
+        g_set_error(error, FL_ERROR, no_match ? FL_ERROR_INPUT : FL_ERROR_STYLE,
+                    "%s: cannot be read: %s", folder, below->message);
         return NULL;
     }
     GArray *names = g_array_new(FALSE, FALSE, sizeof(Name));

@@ -94,6 +94,8 @@ static void add_maps(FlFacts *facts, const FlRegionPlan *painted, FlInputs *inpu
             continue;
         for (const char *const *file = fl_control_map_files(painted->map[k]); *file; file++) {
             const FlDigest digest = fl_inputs_digest(inputs, *file);
+            g_autofree char *name = g_path_get_basename(*file); // its number is in it
+            fl_digest_add_text(&sum, name);
             fl_digest_add(&sum, &digest, sizeof digest);
         }
         g_autofree char *base = g_path_get_basename(painted->settings.map[k]);

@@ -424,6 +424,7 @@ static bool open_map(FlPlan *plan, FlRegionPlan *painted, int k, GError **error)
     g_autofree char *pattern = g_strjoinv(painted->name, parts);
     FlControlMap *map = g_hash_table_lookup(plan->maps, pattern);
     g_autoptr(GError) problem = NULL;
+    fl_inputs_add(plan->inputs, pattern); // pictures may come and go
     if (!map && (map = fl_control_map_open(pattern, &problem)))
         g_hash_table_insert(plan->maps, g_strdup(pattern), map);
     if (!map && !(parts[1] && g_error_matches(problem, FL_ERROR, FL_ERROR_INPUT))) {

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "io/pattern.h"
+#include "io/picture_series.h"
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -138,9 +139,21 @@ static FlDigest folder_digest(const char *path)
     return digest;
 }
 
+static FlDigest pattern_digest(const char *pattern)
+{
+    FlDigest digest = {0};
+    g_autoptr(FlSeries) series = fl_series_of_pattern(pattern, NULL);
+    fl_digest_add_text(&digest, "pattern");
+    for (int k = 0; series && k < series->n; k++)
+        fl_digest_add_text(&digest, series->path[k]);
+    return digest;
+}
+
 FlDigest fl_file_digest(const char *path)
 {
     FlDigest digest = {0};
+    if (fl_input_is_pattern(path))
+        return pattern_digest(path);
     if (g_file_test(path, G_FILE_TEST_IS_DIR))
         return folder_digest(path);
     size_t bytes = 0;

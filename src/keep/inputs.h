@@ -14,7 +14,8 @@ typedef struct FlInputs FlInputs;
 FlInputs *fl_inputs_new(void (*tell)(const char *path, void *data), void *data);
 void fl_inputs_free(FlInputs *inputs); // NULL is fine
 
-/** Adds a file, or a folder whose names are read. It need not exist; path may be NULL. */
+/** Adds a file, or a folder or a pattern whose names are read. It need not exist; path may be NULL.
+ */
 void fl_inputs_add(FlInputs *inputs, const char *path);
 
 /** Adds a style's folders and all files in them. */
@@ -34,8 +35,8 @@ void fl_inputs_add_quietly(FlInputs *inputs, const char *path);
 int fl_inputs_count(const FlInputs *inputs);
 const char *fl_inputs_path(const FlInputs *inputs, int index); // borrowed
 
-/** The digest of a file's contents or a folder's names; that of a path, listed or not, is made once
- * and then known. */
+/** The digest of a file's contents, or of the names of a folder or a pattern; that of a path, listed
+ * or not, is made once and then known. */
 FlDigest fl_inputs_digest(FlInputs *inputs, const char *path);
 
 /** The digest of all files of a style. */
