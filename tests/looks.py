@@ -108,6 +108,10 @@ report("configs override a look, before it or after it", good and pixels("over")
 code, text = run("d_1.svg", "-s", "01", "--save-look", "my.fluidy")
 report("a look is replaced on request only", code != 0 and "already exists" in text, text)
 
+code, text = run("d_1.svg", "-s", "01", "--save-look", "dry.fluidy", "--dry-run")
+report("a dry run saves no look", code == 0 and not os.path.exists("dry.fluidy") and
+       "CRITICAL" not in text, text)
+
 conf = "[project]\nversion = 1\n[defaults]\nstyle = 01\n"
 refused("a file that is no archive", b"no archive", "is no look")
 refused("an archive that ends too early", open("my.fluidy", "rb").read()[:2000], "is no look")

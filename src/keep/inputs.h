@@ -35,8 +35,8 @@ void fl_inputs_add_quietly(FlInputs *inputs, const char *path);
 int fl_inputs_count(const FlInputs *inputs);
 const char *fl_inputs_path(const FlInputs *inputs, int index); // borrowed
 
-/** The digest of a file's contents, or of the names of a folder or a pattern; that of a path, listed
- * or not, is made once and then known. */
+/** The digest of a file's contents, or of the names of a folder or a pattern; that of a path,
+ * listed or not, is made once and then known. */
 FlDigest fl_inputs_digest(FlInputs *inputs, const char *path);
 
 /** The digest of all files of a style. */

@@ -178,9 +178,9 @@ static bool pack(Packing *packing, const FlConfig *config, const FlRenderOptions
     }
     g_autofree char *text = fl_config_text(config, &whole, pack_path, packing, error);
     return text && fl_render_frames(&small, take_thumbnail, packing, error) &&
-           (fl_archive_add_text(&packing->archive, FL_LOOK_CONFIG, text) &&
-            fl_archive_add(&packing->archive, "thumbnail.png",
-                           g_steal_pointer(&packing->thumbnail)));
+           fl_archive_add_text(&packing->archive, FL_LOOK_CONFIG, text) &&
+           (options->dry_run || fl_archive_add(&packing->archive, "thumbnail.png",
+                                               g_steal_pointer(&packing->thumbnail)));
 }
 
 static bool store(FlArchive *archive, const char *path, bool overwrite, GError **error)
@@ -215,7 +215,7 @@ bool fl_save_look(const FlRenderOptions *given, const char *path, GError **error
     GError *problem = NULL;
     const bool saved = fl_archive_open(&packing.archive) &&
                        pack(&packing, config, &options, &problem) &&
-                       store(&packing.archive, path, overwrite, &problem);
+                       (options.dry_run || store(&packing.archive, path, overwrite, &problem));
     if (!saved && !problem)
         fl_fail(&problem, FL_ERROR_NO_MEMORY, "not enough memory for a look");
     fl_archive_clear(&packing.archive);
@@ -225,7 +225,7 @@ bool fl_save_look(const FlRenderOptions *given, const char *path, GError **error
         g_propagate_error(error, problem);
     const FlCaller caller = fl_caller_of(&options);
     if (saved)
-        fl_note(&caller, "saved the look: %s", path);
+        fl_note(&caller, "%s the look: %s", options.dry_run ? "would save" : "saved", path);
     return saved;
 }
 
