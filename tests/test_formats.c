@@ -14,6 +14,7 @@
 #include <signal.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #if HAVE_EXR
 #include "io/cryptomatte.h"
@@ -458,6 +459,11 @@ static void a_film_has_the_sound_that_it_is_given(void)
     g_assert_null(fl_sink_open(&fl_sink_mkv, &params, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
     g_assert_nonnull(strstr(error->message, text));
+    g_clear_error(&error);
+    g_assert_cmpint(remove(text), ==, 0);
+    g_assert_cmpint(mkfifo(text, 0600), ==, 0); // nobody writes to it
+    g_assert_null(fl_sink_open(&fl_sink_mkv, &params, &error));
+    g_assert_nonnull(strstr(error->message, "a pipe"));
 }
 
 #if HAVE_EXR || HAVE_ORA

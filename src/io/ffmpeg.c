@@ -28,6 +28,8 @@ static FlFfmpeg *start(const char *path, const char *kind, const char *const *ar
     g_autoptr(FlFfmpeg) ffmpeg = g_new(FlFfmpeg, 1);
     g_autoptr(GError) below = NULL;
     *ffmpeg = (FlFfmpeg){.path = g_strdup(path), .kind = kind};
+    if (!fl_file_check(path, FL_ERROR_INPUT, error))
+        return NULL;
     ffmpeg->child = fl_child_start_reader(args, path, &below);
     if (!ffmpeg->child) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
@@ -168,8 +170,10 @@ static int64_t copy_sound(const FlFfmpeg *ffmpeg, int fd, int64_t most, GError *
     int64_t all = 0;
     size_t got = block_bytes;
     while (got == block_bytes && all < most) {
-        if (!fl_child_read(ffmpeg->child, block, block_bytes, &got, error))
+        if (!fl_child_read(ffmpeg->child, block, block_bytes, &got, error)) {
+            g_prefix_error(error, "%s: ", ffmpeg->path);
             return -1;
+        }
         const size_t wanted = (size_t)MIN((int64_t)got, most - all);
         if (!fl_write_all(fd, block, wanted)) {
             fl_fail(error, FL_ERROR_OUTPUT, "sound cannot be kept: %s", g_strerror(errno));
