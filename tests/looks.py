@@ -141,8 +141,9 @@ for line, words in (("paper = /etc/passwd", "outside of the look"),
                     ("include = /etc/passwd", "expected no such key"),
                     ("output = evil", "expected no such key")):
     refused("a config with " + line, [("look.conf", "[project]\nversion = 1\n" + line + "\n")], words)
-for line in ("style = /tmp/x", "style = 01@1 ../x@9", "map-front = /tmp/x.png"):
-    refused("a config with " + line, [("look.conf", conf.replace("style = 01", line))],
+for line in ("style = /tmp/x", "style = 01@1 ../x@9", "style = 01@1\f/tmp/x@9",
+             "style = 01@1\u2003/tmp/x@9", "map-front = /tmp/x.png"):
+    refused("a config with " + ascii(line), [("look.conf", conf.replace("style = 01", line))],
             "outside of the look")
 small = os.path.join(fixtures, "style-small")
 refused("a style that names a map", [("look.conf", conf.replace("01", "styles/1-s"))] +

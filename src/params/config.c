@@ -252,7 +252,7 @@ static bool set_default(const Reader *reader, const char *key, const char *value
 /* True if all paths that a value may name start in the folder of the config and stay there. */
 static bool stays_in_folder(const char *value)
 {
-    g_auto(GStrv) words = g_strsplit_set(value, " \t;", -1);
+    g_auto(GStrv) words = g_regex_split_simple("[\\s;]", value, 0, 0); // as between keys
     bool stays = true;
     for (char **word = words; *word; word++) {
         g_auto(GStrv) parts = g_strsplit(*word, "/", -1);
