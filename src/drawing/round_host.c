@@ -1,4 +1,3 @@
-
 #include "base/modes.h"
 #include "drawing/correspondence.h"
 #include <math.h>

@@ -32,7 +32,7 @@ FlPicture *fl_ffmpeg_picture(const char *path, GError **error);
 /**
  * Decodes the first sound of a file, so many seconds from one on, into a temporary file without a
  * name: 16 bits, little end first, channels interleaved. Returns: its descriptor; -1 with
- * FL_ERROR_INPUT, _OUTPUT or _INTERRUPTED set.
+ * FL_ERROR_INPUT or FL_ERROR_OUTPUT set.
  */
 int fl_ffmpeg_sound(const char *path, double from_s, double seconds, GError **error);
 
