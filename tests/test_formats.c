@@ -488,7 +488,8 @@ static char *write_layered(const Scratch *scratch, const char *name)
         whole[i] = (uint8_t)g_rand_int(random);
     const FlSinkLayer layers[2] = {{"back-ground", "sky", 0, 0, W, H, whole},
                                    {HAIR, "hair", 5, 20, 4, 4, small}};
-    const FlSinkFrame frame = {.number = 7, .rgba = whole, .layers = layers, .n_layers = 2};
+    const FlSinkFrame frame = {
+        .number = 7, .rgba = whole, .layers = layers, .n_layers = 2, .thickness = true};
     fl_sink_frame(sink, &frame, &error);
     g_assert_no_error(error);
     g_assert_true(fl_sink_finish(sink, &error));
@@ -605,6 +606,23 @@ static void read_exr(const char *path)
     exr_finish(&context);
 }
 
+/** The mean optical density of the channels of a pixel, times its alpha. */
+static double density_of(const uint8_t *rgba)
+{
+    double sum = 0;
+    for (int c = 0; c < 3; c++) // that of black is finite
+        sum += log10(65535.0 / MAX(fl_srgb_to_linear(rgba[c]), 20));
+    return sum / 3 * rgba[3] / 255;
+}
+
+static void expect_thickness(void)
+{
+    const double below = density_of(whole + 4 * (21 * W + 6)), above = density_of(small);
+    g_assert_cmpfloat_with_epsilon(matte_at("paint.thickness", 2, 2),
+                                   density_of(whole + 4 * (2 * W + 2)), 1e-4);
+    g_assert_cmpfloat_with_epsilon(matte_at("paint.thickness", 6, 21), below + above, 1e-4);
+}
+
 static void an_exr_holds_linear_premultiplied_layers(void)
 {
     g_autoptr(Scratch) scratch = scratch_make();
@@ -617,6 +635,7 @@ static void an_exr_holds_linear_premultiplied_layers(void)
     expect_layer(HAIR ".A", 3, small, (FlRect){5, 20, 4, 4});
     expect_layer("back-ground.B", 2, whole, (FlRect){0, 0, W, H});
     expect_mattes();
+    expect_thickness();
 }
 
 /** A square that moves by 3, -2 px into its second frame, over one that stays. */
@@ -653,6 +672,14 @@ static void an_exr_says_where_pixels_come_from_and_how_thick_paint_is(void)
     g_assert_cmpfloat(matte_at("backward.v", 2, 22), ==, 0);
     g_assert_cmpfloat(matte_at("paint.thickness", 2, 22), ==, 0);
     g_assert_cmpfloat(matte_at("paint.thickness", 12, 12), >, .3f);
+    const FlSetting drafts[] = {settings[0], {.name = "detail", .value = "draft"}};
+    FlRenderOptions draft = options;
+    draft.settings = drafts, draft.n_settings = 2, draft.overwrite = FL_OVERWRITE_YES;
+    fl_render(&draft, &error);
+    g_assert_no_error(error);
+    read_exr(second);
+    g_assert_cmpfloat_with_epsilon(matte_at("backward.u", 12, 12), -3, .1);
+    g_assert_cmpfloat_with_epsilon(matte_at("backward.v", 12, 12), -2, .1);
     g_autofree char *pictures = g_build_filename(scratch, "o_%d.png", NULL);
     FlRenderOptions wrong = options;
     wrong.output = pictures;

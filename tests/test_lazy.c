@@ -211,6 +211,21 @@ static void contrast_stays_where_use_is_equal_and_goes_where_it_is_not(void)
     g_assert_cmpfloat(off, <, .7 * strict);
 }
 
+/* Alpha is of the border's matches. */
+static void below_1_the_border_is_matched_freely(void)
+{
+    static const char *const uniform[] = {"1", "0.9", "0.2"};
+    uint8_t alpha[3][PIXELS];
+    for (int k = 0; k < 3; k++) {
+        g_auto(Film) film;
+        film_init(&film, cut_out(), "lazyfluids", uniform[k]);
+        paint(&film, 1);
+        memcpy(alpha[k], film.alpha, PIXELS);
+    }
+    g_assert_true(memcmp(alpha[0], alpha[1], PIXELS) != 0);
+    g_assert_cmpmem(alpha[1], PIXELS, alpha[2], PIXELS);
+}
+
 /* Blotches whose tones go round, each in its own phase. */
 static FlStyle *pulsing(void)
 {
@@ -486,6 +501,8 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/lazy/contrast-stays-where-use-is-equal-and-goes-where-it-is-not",
                     contrast_stays_where_use_is_equal_and_goes_where_it_is_not);
+    g_test_add_func("/lazy/below-1-the-border-is-matched-freely",
+                    below_1_the_border_is_matched_freely);
     g_test_add_func("/lazy/a-cut-out-has-the-alpha-of-its-exemplar-and-no-paper-in-its-colours",
                     a_cut_out_has_the_alpha_of_its_exemplar_and_no_paper_in_its_colours);
     g_test_add_func("/lazy/a-trimmed-cut-out-paints-nothing-far-outside",

@@ -75,6 +75,20 @@ static void numbered_maps_fade_into_each_other(void)
     g_assert_cmpfloat_with_epsilon(value_at(map, 4, 5), .25f, 1e-6f); // in any order
 }
 
+static void colours_of_a_map_are_grey_over_white(void)
+{
+    static const uint8_t rgba[] = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 0, 128, 0, 0, 0, 0};
+    static const float expected[] = {54 / 255.f, 182 / 255.f, 127 / 255.f, 1};
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *path = g_build_filename(folder, "m.png", NULL);
+    float value[4];
+    g_assert_true(fl_png_write(path, rgba, 4, 1, 4, NULL));
+    g_autoptr(FlControlMap) map = fl_control_map_open(path, NULL);
+    g_assert_true(fl_control_map_read(map, 1, (FlRect){0, 0, 4, 1}, 4, 1, value, NULL));
+    for (int k = 0; k < 4; k++)
+        g_assert_cmpfloat_with_epsilon(value[k], expected[k], 1e-6f);
+}
+
 static void a_map_without_pictures_is_refused(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -115,14 +129,14 @@ static void draw(const char *folder)
     }
 }
 
-/* The last frame, with one more setting; FL_ERROR of a render that fails is in *error. */
-static FlPicture *paint(const char *folder, const char *name, const char *value, bool verify,
-                        GError **error)
+/* The last frame in a style, with one more setting; NULL with FL_ERROR of a render that fails. */
+static FlPicture *paint(const char *folder, const char *style_name, const char *name,
+                        const char *value, bool verify, GError **error)
 {
     g_autofree char *drawing = g_build_filename(folder, "d_%02d.svg", NULL);
     g_autofree char *output = g_build_filename(folder, "out_%02d.png", NULL);
     g_autofree char *last = g_strdup_printf("%s/out_%02d.png", folder, FRAMES);
-    g_autofree char *style = g_test_build_filename(G_TEST_DIST, "styles", "01", NULL);
+    g_autofree char *style = g_test_build_filename(G_TEST_DIST, "styles", style_name, NULL);
     const FlSetting settings[] = {{.name = "style", .value = style},
                                   {.name = name ? name : "style", .value = name ? value : style}};
     const char *const inputs[] = {drawing, NULL};
@@ -147,28 +161,33 @@ static int differing(const FlPicture *a, const FlPicture *b, bool right)
     return n;
 }
 
-/* Each dial that patches have: a white map changes nothing, and one that is black on its left the
+/* Each dial: a white map changes nothing, and one that is black on its left in the last frame the
  * left figure alone. */
 static void maps_change_the_paint_where_they_are_dark(void)
 {
-    static const char *const maps[] = {"map-wash", "map-calm", "map-front", "map-stain",
-                                       "map-carry"};
+    static const char *const maps[][2] = {{"map-wash", "01"},  {"map-calm", "01"},
+                                          {"map-front", "01"}, {"map-stain", "01"},
+                                          {"map-carry", "01"}, {"map-strength", "11"}};
     g_autoptr(Scratch) folder = scratch_make();
-    g_autofree char *whole = write_map(folder, "white.png", 3, 3, white);
-    g_autofree char *half = write_map(folder, "left.png", SIDE, SIDE, left_is_black);
+    g_autofree char *whole = write_map(folder, "late_03.png", 3, 3, white);
+    g_autofree char *half = write_map(folder, "late_04.png", SIDE, SIDE, left_is_black);
+    g_autofree char *late = g_build_filename(folder, "late_%02d.png", NULL);
     g_autoptr(GError) error = NULL;
     draw(folder);
-    g_autoptr(FlPicture) plain = paint(folder, NULL, NULL, false, &error);
+    g_autoptr(FlPicture) patches = paint(folder, "01", NULL, NULL, false, &error);
+    g_autoptr(FlPicture) ink = paint(folder, "11", NULL, NULL, false, &error);
     for (size_t k = 0; k < G_N_ELEMENTS(maps); k++) {
-        g_autoptr(FlPicture) same = paint(folder, maps[k], whole, false, &error);
+        const char *map = maps[k][0], *style = maps[k][1];
+        const FlPicture *plain = g_str_equal(style, "11") ? ink : patches;
+        g_autoptr(FlPicture) same = paint(folder, style, map, whole, false, &error);
         g_assert_no_error(error);
-        g_autoptr(FlPicture) changed = paint(folder, maps[k], half, false, &error);
+        g_autoptr(FlPicture) changed = paint(folder, style, map, late, false, &error);
         g_assert_no_error(error);
-        g_test_message("%s: left %d, right %d", maps[k], differing(plain, changed, false),
+        g_test_message("%s: left %d, right %d", map, differing(plain, changed, false),
                        differing(plain, changed, true));
         g_assert_cmpint(differing(plain, same, false) + differing(plain, same, true), ==, 0);
         g_assert_cmpint(differing(plain, changed, false), >, 20);
-        if (strcmp(maps[k], "map-carry") != 0) // fields of matches are one
+        if (!g_str_equal(map, "map-carry") && !g_str_equal(map, "map-strength")) // of the region
             g_assert_cmpint(differing(plain, changed, true), <=, 20);
     }
 }
@@ -180,9 +199,9 @@ static void a_black_map_is_a_dial_of_0(void)
     g_autofree char *map = write_map(folder, "black.png", 3, 3, black);
     g_autoptr(GError) error = NULL;
     draw(folder);
-    g_autoptr(FlPicture) mapped = paint(folder, "map-stain", map, false, &error);
-    g_autoptr(FlPicture) off = paint(folder, "stain", "0", false, &error);
-    g_autoptr(FlPicture) plain = paint(folder, NULL, NULL, false, &error);
+    g_autoptr(FlPicture) mapped = paint(folder, "01", "map-stain", map, false, &error);
+    g_autoptr(FlPicture) off = paint(folder, "01", "stain", "0", false, &error);
+    g_autoptr(FlPicture) plain = paint(folder, "01", NULL, NULL, false, &error);
     g_assert_no_error(error);
     g_assert_cmpint(differing(off, plain, false), >, 20);
     g_assert_cmpint(differing(off, mapped, false) + differing(off, mapped, true), ==, 0);
@@ -194,13 +213,19 @@ static void maps_of_regions_may_be_missing_for_some(void)
     g_autofree char *pattern = g_build_filename(folder, "{region}.png", NULL);
     g_autoptr(GError) error = NULL;
     draw(folder);
-    g_autoptr(FlPicture) none = paint(folder, "map-stain", pattern, false, &error);
+    g_autoptr(FlPicture) none = paint(folder, "01", "map-stain", pattern, false, &error);
     g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
     g_assert_nonnull(strstr(error->message, "no region has such a picture"));
     g_clear_error(&error);
-    g_autoptr(FlPicture) wrong = paint(folder, "map-strength", pattern, false, &error);
+    g_autoptr(FlPicture) wrong = paint(folder, "01", "map-strength", pattern, false, &error);
     g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
     g_assert_nonnull(strstr(error->message, "the engine patch has no such dial"));
+    g_clear_error(&error);
+    g_autofree char *own = write_map(folder, "navy-2f5f9f.png", 3, 3, black);
+    g_autoptr(FlPicture) mapped = paint(folder, "01", "map-stain", pattern, false, &error);
+    g_autoptr(FlPicture) same = paint(folder, "01", "map-stain", own, false, &error);
+    g_assert_no_error(error);
+    g_assert_cmpint(differing(mapped, same, false) + differing(mapped, same, true), ==, 0);
 }
 
 /* Pictures of a map that has changed are not as they would be made now. */
@@ -210,11 +235,11 @@ static void a_changed_map_is_noticed(void)
     g_autofree char *map = write_map(folder, "map.png", 3, 3, white);
     g_autoptr(GError) error = NULL;
     draw(folder);
-    g_autoptr(FlPicture) first = paint(folder, "map-stain", map, false, &error);
-    g_autoptr(FlPicture) verified = paint(folder, "map-stain", map, true, &error);
+    g_autoptr(FlPicture) first = paint(folder, "01", "map-stain", map, false, &error);
+    g_autoptr(FlPicture) verified = paint(folder, "01", "map-stain", map, true, &error);
     g_assert_no_error(error);
     g_free(write_map(folder, "map.png", 3, 3, black));
-    g_autoptr(FlPicture) changed = paint(folder, "map-stain", map, true, &error);
+    g_autoptr(FlPicture) changed = paint(folder, "01", "map-stain", map, true, &error);
     g_assert_error(error, FL_ERROR, FL_ERROR_CHANGED);
 }
 
@@ -228,13 +253,13 @@ static void a_renamed_map_is_noticed(void)
     g_autofree char *pattern = g_build_filename(folder, "map_%02d.png", NULL);
     g_autoptr(GError) error = NULL;
     draw(folder);
-    g_autoptr(FlPicture) painted = paint(folder, "map-stain", pattern, false, &error);
-    g_autoptr(FlPicture) verified = paint(folder, "map-stain", pattern, true, &error);
+    g_autoptr(FlPicture) painted = paint(folder, "01", "map-stain", pattern, false, &error);
+    g_autoptr(FlPicture) verified = paint(folder, "01", "map-stain", pattern, true, &error);
     g_assert_no_error(error);
     const FlDigest names = fl_file_digest(pattern);
     g_assert_cmpint(g_rename(last, later), ==, 0);
     g_assert_false(fl_digest_is_same(names, fl_file_digest(pattern)));
-    g_autoptr(FlPicture) changed = paint(folder, "map-stain", pattern, true, &error);
+    g_autoptr(FlPicture) changed = paint(folder, "01", "map-stain", pattern, true, &error);
     g_assert_error(error, FL_ERROR, FL_ERROR_CHANGED);
 }
 
@@ -245,7 +270,7 @@ static void maps_of_regions_may_be_in_folders(void)
     g_autofree char *pattern = g_build_filename(folder, "{region}", "m_%02d.png", NULL);
     g_autoptr(GError) error = NULL;
     draw(folder);
-    g_autoptr(FlPicture) none = paint(folder, "map-stain", pattern, false, &error);
+    g_autoptr(FlPicture) none = paint(folder, "01", "map-stain", pattern, false, &error);
     g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
     g_assert_nonnull(strstr(error->message, "no region has such a picture"));
 }
@@ -257,6 +282,7 @@ int main(int argc, char **argv)
 #define TEST(name) g_test_add_func("/maps/" #name, name)
     TEST(a_map_is_stretched_to_the_frame);
     TEST(numbered_maps_fade_into_each_other);
+    TEST(colours_of_a_map_are_grey_over_white);
     TEST(a_map_without_pictures_is_refused);
     TEST(maps_change_the_paint_where_they_are_dark);
     TEST(a_black_map_is_a_dial_of_0);

@@ -182,6 +182,24 @@ static void a_missing_frame_is_named(void)
     remove_folder(folder);
 }
 
+static bool stops(void *data)
+{
+    g_atomic_int_inc((int *)data);
+    return true;
+}
+
+static void reading_may_be_stopped_between_frames(void)
+{
+    int asked = 0;
+    const FlStop stop = {stops, &asked};
+    g_autoptr(GError) error = NULL;
+    g_autofree char *folder = drop_folder();
+    g_assert_null(fl_style_load_until(folder, &stop, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_INTERRUPTED);
+    g_assert_cmpint(asked, >, 0);
+    remove_folder(folder);
+}
+
 static void a_frame_of_another_size_is_named(void)
 {
     g_autofree char *folder = drop_folder();
@@ -342,6 +360,8 @@ int main(int argc, char **argv)
     g_test_add_func("/style/a-mistake-in-style-ini-is-told-with-its-line",
                     a_mistake_in_style_ini_is_told_with_its_line);
     g_test_add_func("/style/a-missing-frame-is-named", a_missing_frame_is_named);
+    g_test_add_func("/style/reading-may-be-stopped-between-frames",
+                    reading_may_be_stopped_between_frames);
     g_test_add_func("/style/a-frame-of-another-size-is-named", a_frame_of_another_size_is_named);
     g_test_add_func("/style/a-damaged-frame-is-named", a_damaged_frame_is_named);
     g_test_add_func("/style/other-pictures-are-told-to-be-imported",
