@@ -149,6 +149,11 @@ result $? 'what is wrong in many places is one warning, and the summary recalls 
 "$program" whole -s 01 --preview 3 >out 2>err && "$program" whole -s 01 --preview 3 -q >out 2>err &&
     [ "$(ls fluidy)" = "$(printf 'w_preview_%s\n' 0002.png 0003.png)" ] && rm -r fluidy
 result $? '--preview paints a frame and those beside it, again and again'
+printf '[project]\nversion = 1\nlayers = film/{region}_%%d.png\nvectors = on\naudio = none.wav\n' >film.conf
+"$program" whole -s 01 -c film.conf --preview 2 >out 2>err &&
+    "$program" whole -c film.conf --styles 01 -o sheet0.png -f 2 >>out 2>>err && [ -s sheet0.png ] &&
+    [ -s fluidy/w_preview_0002.png ] && rm -r fluidy && [ ! -e film ]
+result $? 'drafts and sheets are made without the layers, vectors and sound of a config'
 "$program" whole --styles 01,03 >out 2>err && [ "$(ls fluidy)" = w_styles.png ] && rm -r fluidy &&
     grep -q 'style 01 Watercolour' err &&
     "$program" whole --styles 01,03 -o sheet.png -f 2 -q >out 2>err && [ -s sheet.png ] && [ ! -s err ]

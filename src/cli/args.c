@@ -412,6 +412,8 @@ static bool make_preview(FlArgs *args, GError **error)
     }
     if (args->preview)
         args->render.frames = args->preview;
+    if (!args->render.layers)
+        args->render.layers = ""; // those that the config names are of the whole film
     if (args->render.output)
         return true;
     args->render.overwrite = FL_OVERWRITE_YES;

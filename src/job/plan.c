@@ -114,7 +114,32 @@ static bool are_frames_alone(const FlPlan *plan)
            !gives_paint && !o->dump && !o->report;
 }
 
-static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
+/* A part of another kind of output is refused if the caller asks for it, and left out if the config
+ * has it: drafts and sheets are made by the config of a film. */
+static bool fit_output(FlPlan *plan, const FlRenderOptions *given, GError **error)
+{
+    FlRenderOptions *o = &plan->options;
+    FlOutputs *out = &plan->out;
+    if (!out->movie && !out->format->film) {
+        if (given->audio)
+            return fl_fail(error, FL_ERROR_USAGE,
+                           "‘audio’ is the sound of a film; expected an output such as walk.mov");
+        o->audio = out->audio = NULL;
+    }
+    if (strcmp(out->format->name, "exr") != 0) {
+        if (given->vectors || given->thickness)
+            return fl_fail(
+                error, FL_ERROR_USAGE,
+                "‘%s’ is a part of OpenEXR files; expected an output such as walk_%%04d.exr",
+                given->vectors ? "vectors" : "thickness");
+        o->vectors = o->thickness = out->thickness = false;
+    }
+    return true;
+}
+
+/* given: the options before the config has completed them. */
+static bool make_plan(FlPlan *plan, const FlRenderOptions *given, const FlPlan *before,
+                      GError **error)
 {
     FlShapes *shapes = &plan->shapes;
     if (!plan->options.inputs || !plan->options.inputs[0])
@@ -123,14 +148,8 @@ static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
             "no input: expected SVG files, a folder, or a pattern such as input_%%04d.svg");
     if (!check_options(&plan->options, error) || !fl_plan_find_output(plan, error))
         return false;
-    if (plan->options.audio && !plan->out.movie && !plan->out.format->film)
-        return fl_fail(error, FL_ERROR_USAGE,
-                       "‘audio’ is the sound of a film; expected an output such as walk.mov");
-    if ((plan->options.vectors || plan->options.thickness) &&
-        strcmp(plan->out.format->name, "exr") != 0)
-        return fl_fail(error, FL_ERROR_USAGE,
-                       "‘%s’ is a part of OpenEXR files; expected an output such as walk_%%04d.exr",
-                       plan->options.vectors ? "vectors" : "thickness");
+    if (!fit_output(plan, given, error))
+        return false;
     if (plan->finished == FL_FINISHED_ALL ||
         (plan->options.verify && fl_digest_is_known(plan->made_from)))
         return true;
@@ -169,10 +188,13 @@ static void choose_written(FlPlan *plan, const FlRenderOptions *given)
     const FlRenderOptions *o = &plan->options;
     if (o->merge && o->ebsynth && !o->paint)
         plan->options.paint = plan->painted_by_ebsynth = pattern_below(o->ebsynth);
-    // paint of some regions is no frame, even if the config says where frames and layers are
+    // paint of some regions, or a frame that is taken, has no layers, even if the config names them
     const bool paint_alone = given->paint && given->only_region && !given->output;
-    if (paint_alone && o->no_frames && !given->layers)
+    const bool taken = given->format && g_str_equal(given->format, "null"); // by the caller
+    if (((paint_alone && o->no_frames) || taken) && !given->layers)
         plan->options.layers = NULL;
+    if (o->layers && !*o->layers)
+        plan->options.layers = NULL; // an empty pattern takes back that of the config
     const bool parts_only =
         o->no_frames && (o->paint || o->layers) && !o->merge && (!o->output || paint_alone);
     plan->out = (FlOutputs){.parts_only = parts_only,
@@ -263,7 +285,7 @@ static FlPlan *follow(FlPlan *before, bool same_drawing, const FlRenderOptions *
 {
     FlPlan *plan = g_new0(FlPlan, 1);
     const bool made = begin(plan, before, options, memory, error) &&
-                      make_plan(plan, same_drawing ? before : NULL, error);
+                      make_plan(plan, options, same_drawing ? before : NULL, error);
     if (!before && made)
         return plan;
     const bool shares =

@@ -191,7 +191,8 @@ static FlRenderOptions options_of_frames(const FlFilm *film)
     FlRenderOptions options = options_of(film);
     options.output = NULL, options.format = "null", options.no_frames = false;
     options.overwrite = FL_OVERWRITE_YES, options.resume = options.dry_run = false;
-    options.layers = options.paint = options.part = NULL;
+    options.layers = options.paint = options.part = options.audio = NULL;
+    options.vectors = options.thickness = false;
     options.report = options.stats = options.dump = options.ebsynth = NULL;
     options.merge = false;
     return options;
