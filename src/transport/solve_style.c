@@ -74,8 +74,8 @@ static void fold(const float *in, int length, size_t step, int size, float *out,
     }
 }
 
-/* The densities of a tile: those of the picture, whose sides meet if it is as large as the tile.
- * Returns: to be freed. */
+/* The densities of a tile: those of a picture of its size, or a part of a larger one that is
+ * folded. Returns: to be freed. */
 static float *tile_ink(const FlStyle *style, int size, GError **error)
 {
     const int width = style->width, height = style->height;
