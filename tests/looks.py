@@ -117,7 +117,7 @@ refused("a file that is no archive", b"no archive", "is no look")
 refused("an archive that ends too early", open("my.fluidy", "rb").read()[:2000], "is no look")
 refused("an archive without a config", [("files/a", "")], "it has no look.conf")
 for bad in ("../evil", "/tmp/evil", "styles/../../evil", "styles\\evil", "evil", "styles//evil",
-            "files/.evil", "files/\x1bevil", "files/" + "e" * 300, "C:/evil"):
+            "files/.evil", "files/\x1bevil", "files/" + "e" * 300, "C:/evil", "files/C:evil", "files/evil?"):
     refused("a file named " + ascii(bad)[:30], [("look.conf", conf), (bad, "x")], "is none of a look")
 link = zipfile.ZipInfo("files/evil")
 link.external_attr = 0o120777 << 16

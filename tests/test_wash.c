@@ -523,6 +523,25 @@ static void a_heart_is_light(void)
     g_assert_cmpfloat(middle, <, -.1);
 }
 
+/* Drops fall into some of eight pages: of water, which is light within its rim, and of paint. */
+static void drops_leave_light_and_dark_spots(void)
+{
+    static const FlWashStyle wet = {.wash = 1, .blooms = 1}, even = {.wash = 1};
+    int light = 0, dark = 0;
+    for (int k = 0; k < 8; k++) {
+        g_autofree char *page =
+            g_strdup_printf("<path id='p%d' fill='#%02x80c0' d='M0 0h400v300h-400z'/>", k, 30 * k);
+        g_autofree Tones *drops = lay_still(page, &wet, 0), *none = lay_still(page, &even, 0);
+        for (int i = 0; i < W * H; i++) {
+            light += drops->tone[i] < none->tone[i] - .08f;
+            dark += drops->tone[i] > none->tone[i] + .08f;
+        }
+    }
+    g_test_message("%d px are lighter, %d darker", light, dark);
+    g_assert_cmpint(light, >, 10000);
+    g_assert_cmpint(dark, >, 3000);
+}
+
 static void threads_and_parts_do_not_matter(void)
 {
     const char *const frames[] = {BLOB " id='b' transform='translate(180 150)'/>"
@@ -738,6 +757,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/dots-and-lines-have-none", dots_and_lines_have_none);
     g_test_add_func("/wash/a-calm-wash-keeps-some-of-the-rim", a_calm_wash_keeps_some_of_the_rim);
     g_test_add_func("/wash/a-heart-is-light", a_heart_is_light);
+    g_test_add_func("/wash/drops-leave-light-and-dark-spots", drops_leave_light_and_dark_spots);
     g_test_add_func("/wash/threads-and-parts-do-not-matter", threads_and_parts_do_not_matter);
     g_test_add_func("/contacts/wet-fields-run-into-each-other", wet_fields_run_into_each_other);
     g_test_add_func("/gaps/edges-are-off-by-a-hair", edges_are_off_by_a_hair);

@@ -222,6 +222,35 @@ static void test_start(void)
     scene_free(scene);
 }
 
+static int by_size(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* Fingers all around a disk that grows: a few are long, many short. */
+static void test_fingers(void)
+{
+    enum { N = 240 };
+    Scene *scene = scene_new();
+    FlFrontStyle style = plain;
+    float reach[N] = {0};
+    style.fingers = 1;
+    scene->dials.style = &style;
+    mark(scene, 100, 100, 24);
+    for (guint i = 0; i < scene->fronts->len; i++) {
+        const FlFrontMark *front = &g_array_index(scene->fronts, FlFrontMark, i);
+        const double x = front->at % SIDE - 100, y = front->at / SIDE - 100;
+        float *far = &reach[(int)((atan2(y, x) / G_PI + 1) / 2 * (N - 1))];
+        *far = MAX(*far, -scene->distance[front->at]);
+    }
+    qsort(reach, N, sizeof *reach, by_size);
+    const float shortest = reach[N / 20], median = reach[N / 2], longest = reach[N - 1 - N / 20];
+    g_test_message("reach from %.1f, median %.1f, to %.1f px", shortest, median, longest);
+    g_assert_cmpfloat(longest - median, >, 1.5f * (median - shortest));
+    scene_free(scene);
+}
+
 static void test_rest(void)
 {
     Scene *scene = scene_new();
@@ -443,6 +472,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/stains-break-up-where-they-begin", test_start);
     g_test_add_func("/wet/paint-that-passes-takes-up-a-stain", test_taken_up);
     g_test_add_func("/wet/a-stain-breaks-up-towards-its-sides", test_frayed);
+    g_test_add_func("/wet/a-few-fingers-are-long-and-many-short", test_fingers);
     g_test_add_func("/wet/what-rests-marks-nothing", test_rest);
     g_test_add_func("/wet/what-vanishes-leaves-less-than-what-recedes", test_vanish);
     g_test_add_func("/wet/fronts-go-with-a-shape-that-jumps", test_jump);
