@@ -98,6 +98,10 @@ os.remove("shot.conf")
 good, text = paint("by_look", "--look", "my.fluidy")
 report("a look paints the same without the files it was made from",
        good and pixels("wanted") == pixels("by_look"), text)
+shutil.copy("my.fluidy", "MY.FLUIDY")
+good, text = paint("upper", "--look", "MY.FLUIDY")
+report("the end of a look's name may be in capitals",
+       good and pixels("wanted") == pixels("upper"), text)
 good, text = paint("other", "--look", "my.fluidy", "--tint", "#00ff00")
 report("options override a look", good and pixels("other") != pixels("wanted"), text)
 with open("over.conf", "w", encoding="utf-8") as config:

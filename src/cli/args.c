@@ -1,6 +1,7 @@
 #include "args.h"
 
 #include "help.h"
+#include "params/look.h"
 #include "params/text.h"
 #include "words.h"
 
@@ -97,7 +98,7 @@ static gboolean read_look(const char *name, const char *value, gpointer data, GE
 {
     FlArgs *args = data;
     const char *after = args->render.config;
-    if (!g_str_has_suffix(value, ".fluidy")) {
+    if (!fl_look_named(value)) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s”: expected a look, FILE.fluidy", name,
                     value);
         return FALSE;

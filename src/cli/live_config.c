@@ -1,6 +1,7 @@
 #include "live_config.h"
 
 #include "base/json.h"
+#include "params/look.h"
 #include "params/options.h"
 
 #include <string.h>
@@ -171,7 +172,7 @@ static char *path_beside(const char *input)
 static const char *given_config(const FlLiveConfig *config)
 {
     const char *given = config->args->render.config;
-    return given && !g_str_has_suffix(given, ".fluidy") ? given : NULL;
+    return given && !fl_look_named(given) ? given : NULL;
 }
 
 char *fl_live_config_save(const FlLiveConfig *config, bool replace, GError **error)

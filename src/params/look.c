@@ -13,12 +13,6 @@
 
 enum { MOST_FILES = 4096, LONGEST_NAME = 200 };
 
-bool fl_look_named(const char *path)
-{
-    g_autofree char *lower = g_ascii_strdown(path, -1);
-    return g_str_has_suffix(lower, FL_LOOK_SUFFIX);
-}
-
 #if HAVE_ORA
 #include <zip.h>
 

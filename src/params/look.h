@@ -9,8 +9,12 @@
 #define FL_LOOK_SUFFIX ".fluidy"
 #define FL_LOOK_CONFIG "look.conf"
 
-/** Returns: true if a file's name ends as that of a look. */
-bool fl_look_named(const char *path);
+/** Returns: true if a file's name ends as that of a look. Inline, for the programs too. */
+static inline bool fl_look_named(const char *path)
+{
+    g_autofree char *lower = g_ascii_strdown(path, -1);
+    return g_str_has_suffix(lower, FL_LOOK_SUFFIX);
+}
 
 /**
  * Unpacks a look, which need not be trusted, into a folder of the user's cache that is named by its
