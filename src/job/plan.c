@@ -188,10 +188,9 @@ static void choose_written(FlPlan *plan, const FlRenderOptions *given)
     const FlRenderOptions *o = &plan->options;
     if (o->merge && o->ebsynth && !o->paint)
         plan->options.paint = plan->painted_by_ebsynth = pattern_below(o->ebsynth);
-    // paint of some regions, or a frame that is taken, has no layers, even if the config names them
+    // paint of some regions is no frame, even if the config says where frames and layers are
     const bool paint_alone = given->paint && given->only_region && !given->output;
-    const bool taken = given->format && g_str_equal(given->format, "null"); // by the caller
-    if (((paint_alone && o->no_frames) || taken) && !given->layers)
+    if (paint_alone && o->no_frames && !given->layers)
         plan->options.layers = NULL;
     if (o->layers && !*o->layers)
         plan->options.layers = NULL; // an empty pattern takes back that of the config

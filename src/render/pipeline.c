@@ -427,7 +427,8 @@ bool fl_render_frames(const FlRenderOptions *options, FlTakeFrame take, void *ta
     without_files.output = NULL, without_files.format = "null";
     without_files.overwrite = FL_OVERWRITE_YES, without_files.resume = false;
     without_files.cache = NULL; // frames are given once, so a failed render cannot be retried
-    without_files.layers = without_files.report = without_files.stats = NULL;
+    without_files.report = without_files.stats = NULL;
+    without_files.layers = ""; // none, even if the config names them
     without_files.dump = without_files.provenance = NULL;
     without_files.audio = NULL;
     without_files.vectors = without_files.thickness = false;
