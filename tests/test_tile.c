@@ -97,7 +97,7 @@ static double step_of(const FlFlowMap *map, int first, int last)
     for (int y = 0; y < map->height; y++)
         for (int x = first; x < last; x++) {
             const float *row = map->jacobian + y * map->width;
-            sum += fabs((double)row[(x + 1) % map->width] - (double)row[x]);
+            sum += fabs((double)row[(x + 1) % map->width] - (double)row[x % map->width]);
         }
     return sum / map->height / (last - first);
 }
