@@ -164,7 +164,8 @@ typedef struct FlRenderOptions {
     bool thickness;     /**< of OpenEXR files: also the thickness of the paint at each pixel */
     bool no_frames; /**< if the output is a film, write the film alone, without its frames as PNG
                        files */
-    const char *layers; /**< pattern with {region} for one RGBA file per region; NULL: no layers */
+    const char *layers; /**< pattern with {region} for one RGBA file per region; NULL: those of the
+                           config; "": no layers */
     const char *paint;  /**< the same for the paint itself, before colours and stacking; NULL: no
                            paint files */
     FlPaintArea paint_area; /**< size of the files of `paint` */
