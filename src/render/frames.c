@@ -1,18 +1,16 @@
 #include "render/frames.h"
 
-#include "base/alloc.h"
 #include "base/error.h"
 #include "base/memory.h"
 #include "base/page.h"
 #include "base/schedule.h"
 #include "compose/composite.h"
 #include "drawing/drawing.h"
-#include "guides/half_guides.h"
 #include "inspect/dump.h"
 #include "inspect/ebsynth.h"
 #include "io/picture_file.h"
+#include "render/motion_vectors.h"
 #include "worker/messages.h"
-#include <math.h>
 
 #define WET_IN_DRAFTS 3 // frames from which wet paper is known
 
@@ -212,19 +210,6 @@ static bool seek_painters(FlFrames *frames, int shown,
     return good;
 }
 
-/* An FlWetMotion; data: an FlMotionSource. */
-static bool wet_motion(void *data, int region, int before, int now, FlRect part, float *motion,
-                       GError **error)
-{
-    const FlRegionStep step = {region, before, now, part, {NULL, NULL}};
-    g_autofree float *half =
-        fl_alloc_unset(2 * fl_rect_pixels(fl_rect_halved(part)), sizeof *half, "a motion", error);
-    if (!half || !fl_motion_source_get(data, &step, half, NULL, error))
-        return false;
-    fl_flow_double(half, part.width, part.height, motion);
-    return true;
-}
-
 static FlWet *new_wet(const FlFrames *frames, const FlShapes *shapes, FlWet *before,
                       FlMotionSource *motion, GError **error)
 {
@@ -235,7 +220,7 @@ static FlWet *new_wet(const FlFrames *frames, const FlShapes *shapes, FlWet *bef
                                   .stain_time = o->stain_time * (o->fps > 0 ? o->fps : 24) / 24,
                                   .overrun = o->overrun,
                                   .camera = o->camera};
-    return fl_wet_new(shapes, &options, before, wet_motion, motion, error);
+    return fl_wet_new(shapes, &options, before, fl_motion_source_whole, motion, error);
 }
 
 /* Motion in half the size, of all regions. */
@@ -260,49 +245,10 @@ static bool open_wet(FlFrames *frames, GError **error)
     return frames->wet;
 }
 
-/* Adds the motion of a region where a draw covers what lies below. A held picture is at rest. */
-static bool add_vectors(FlFrames *frames, const FlDraw *draw, int frame, float *vectors,
-                        GError **error)
-{
-    const FlShapes *shapes = &frames->plan->shapes;
-    const FlRect page = {0, 0, shapes->width, shapes->height};
-    const FlRect box = draw->area.box, part = fl_rect_and(fl_rect_on_grid(box, 2), page);
-    const int hold = shapes->hold_of[draw->region], last = (shapes->n_frames - 1) / hold * hold;
-    const int before = frame >= hold ? frame - hold : shapes->loop ? last : -1;
-    FlMotionSource *motion = halved_motion(frames, error);
-    g_autofree float *own = fl_alloc(2 * fl_rect_pixels(part), sizeof *own, "a motion", error);
-    if (!motion || !own)
-        return false;
-    if (shapes->painted_of[draw->region] >= 0 && before >= 0 && frame % hold == 0 &&
-        !wet_motion(motion, draw->region, before, frame, part, own, error))
-        return false;
-    for (int y = box.y; y < box.y + box.height; y++)
-        for (int x = box.x; x < box.x + box.width; x++) {
-            const float *from =
-                own + 2 * ((size_t)(y - part.y) * (size_t)part.width + (size_t)(x - part.x));
-            float *to = vectors + 2 * ((size_t)y * (size_t)page.width + (size_t)x);
-            if (draw->coverage[(size_t)(y - box.y) * (size_t)box.width + (size_t)(x - box.x)] > 127)
-                to[0] = isnan(from[0]) ? 0 : from[0], to[1] = isnan(from[1]) ? 0 : from[1];
-        }
-    return true;
-}
-
-/* The vectors of a composite, in the size of the page. */
 static bool find_vectors(FlFrames *frames, int frame, FlComposite *composite, GError **error)
 {
-    const FlShapes *shapes = &frames->plan->shapes;
-    const size_t n = (size_t)shapes->page_width * (size_t)shapes->page_height;
-    g_autofree float *vectors = fl_alloc(2 * n, sizeof *vectors, "motion vectors", error);
-    for (int k = 0; vectors && k < composite->draws->n; k++)
-        if (fl_rect_pixels(composite->draws->draw[k].area.box) > 0 &&
-            !add_vectors(frames, &composite->draws->draw[k], frame, vectors, error))
-            return false;
-    if (!vectors || shapes->width == shapes->page_width)
-        return (composite->vectors = g_steal_pointer(&vectors));
-    composite->vectors = fl_alloc(2 * n, sizeof *vectors, "motion vectors", error);
-    if (composite->vectors)
-        fl_flow_double(vectors, shapes->page_width, shapes->page_height, composite->vectors);
-    return composite->vectors;
+    FlMotionSource *motion = halved_motion(frames, error);
+    return motion && fl_motion_vectors(&frames->plan->shapes, motion, frame, composite, error);
 }
 
 static bool starts_late(const FlPlan *plan)

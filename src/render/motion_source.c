@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/spill.h"
-#include "guides/guides.h"
+#include "guides/half_guides.h"
 #include <string.h>
 
 #define KEPT 6 // in memory; regions that are worked on side by side are near each other
@@ -234,4 +234,16 @@ bool fl_motion_source_get(FlMotionSource *source, const FlRegionStep *step, floa
     }
     release(source, &use);
     return good;
+}
+
+bool fl_motion_source_whole(void *source, int region, int before, int now, FlRect rect,
+                            float *motion, GError **error)
+{
+    const FlRegionStep step = {region, before, now, rect, {NULL, NULL}};
+    g_autofree float *half =
+        fl_alloc_unset(2 * fl_rect_pixels(fl_rect_halved(rect)), sizeof *half, "a motion", error);
+    if (!half || !fl_motion_source_get(source, &step, half, NULL, error))
+        return false;
+    fl_flow_double(half, rect.width, rect.height, motion);
+    return true;
 }

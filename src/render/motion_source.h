@@ -37,6 +37,11 @@ typedef struct FlRegionStep {
 bool fl_motion_source_get(FlMotionSource *source, const FlRegionStep *step, float *motion,
                           FlMotionShares *shares, GError **error);
 
+/** fl_motion_source_get() of a halved source in whole px: 2 * area of rect. source: an
+ * FlMotionSource. */
+bool fl_motion_source_whole(void *source, int region, int before, int now, FlRect rect,
+                            float *motion, GError **error);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlMotionSource, fl_motion_source_free)
 
 #endif
