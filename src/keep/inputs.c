@@ -129,24 +129,26 @@ void fl_inputs_add_frames(FlInputs *inputs, const FlDrawing *drawing, const char
 
 /* ---- digests --------------------------------------------------------------------------------- */
 
-static FlDigest folder_digest(const char *path)
+static FlDigest names_digest(const char *kind, char *const *name, int n)
 {
     FlDigest digest = {0};
-    g_autoptr(GPtrArray) names = fl_folder_names(path, NULL);
-    fl_digest_add_text(&digest, "folder");
-    for (guint k = 0; names && k < names->len; k++)
-        fl_digest_add_text(&digest, names->pdata[k]);
+    fl_digest_add_text(&digest, kind);
+    for (int k = 0; k < n; k++)
+        fl_digest_add_text(&digest, name[k]);
     return digest;
+}
+
+static FlDigest folder_digest(const char *path)
+{
+    g_autoptr(GPtrArray) names = fl_folder_names(path, NULL);
+    return names_digest("folder", names ? (char **)names->pdata : NULL,
+                        names ? (int)names->len : 0);
 }
 
 static FlDigest pattern_digest(const char *pattern)
 {
-    FlDigest digest = {0};
     g_autoptr(FlSeries) series = fl_series_of_pattern(pattern, NULL);
-    fl_digest_add_text(&digest, "pattern");
-    for (int k = 0; series && k < series->n; k++)
-        fl_digest_add_text(&digest, series->path[k]);
-    return digest;
+    return names_digest("pattern", series ? series->path : NULL, series ? series->n : 0);
 }
 
 FlDigest fl_file_digest(const char *path)
