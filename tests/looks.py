@@ -122,7 +122,7 @@ refused("an archive that ends too early", open("my.fluidy", "rb").read()[:2000],
 refused("an archive without a config", [("files/a", "")], "it has no look.conf")
 for bad in ("../evil", "/tmp/evil", "styles/../../evil", "styles\\evil", "evil", "styles//evil",
             "files/.evil", "files/\x1bevil", "files/" + "e" * 300, "C:/evil", "files/C:evil", "files/evil?"):
-    refused("a file named " + ascii(bad)[:30], [("look.conf", conf), (bad, "x")], "is none of a look")
+    refused("a file named " + ascii(bad)[:30], [("look.conf", conf), (bad, "x")], "does not belong to a look")
 link = zipfile.ZipInfo("files/evil")
 link.external_attr = 0o120777 << 16
 refused("a file that is there twice", [("look.conf", conf), ("files/a", "1"), ("files/a", "2")],

@@ -132,10 +132,11 @@ static gboolean read_map(const char *name, const char *value, gpointer data, GEr
     }
     const bool scale = dial && strstr(dial, "scale");
     g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                scale ? "%s: “%s”: the exemplar has one size in a region; maps are of carry, "
-                        "strength, wash, calm, front and stain"
-                      : "%s: “%s” is not a dial that has maps, = and pictures; expected one such "
-                        "as front=front_%%04d.png, of carry, strength, wash, calm, front or stain",
+                scale
+                    ? "%s: “%s”: the exemplar has one size in a region; maps are of carry, "
+                      "strength, wash, calm, front and stain"
+                    : "%s: “%s” is not DIAL=PICTURES; expected carry, strength, wash, calm, front "
+                      "or stain and its pictures, such as front=front_%%04d.png",
                 name, value);
     return FALSE;
 }

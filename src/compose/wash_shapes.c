@@ -87,8 +87,8 @@ void fl_field_blur(const FlWashField *field, float *plane, float sigma_px)
 
 #define LEAK .05f // of what is spread from a point within a shape to one beside it
 
-/* What comes into a row from the one beside it: as far as points of both lie in a shape, a share of
- * what came there goes on. Rows lie apart, which lets the compiler vectorise this. */
+/* Spreads values from a row into the one beside it: a share goes on as far as points of both lie in
+ * a shape. Rows lie apart, so that the compiler vectorises this. */
 static void come_from(const float *restrict beside, const float *restrict mask_beside,
                       const float *restrict mask, int n, float share, float *restrict come)
 {

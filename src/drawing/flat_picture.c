@@ -80,7 +80,7 @@ void fl_draw_list_map(const FlDrawing *drawing, const FlDrawList *draws, uint8_t
  * Returns: true if a pixel that is covered in part belongs to a shape that fades, such as a glow or
  * a blurred shadow: it is not at a contour, for all around it on the page is seen. Such a pixel is
  * inside as any other, and opacity is the layer's: a mask that fell from full to half coverage
- * where a glow does would have a contour there.
+ * along a glow would have a contour there.
  */
 static bool fades(const FlDraw *draw, FlRect page, int x, int y)
 {

@@ -52,7 +52,7 @@ typedef struct FlSinkParams {
     int width, height;          // pixels, >= 1
     double fps;                 // films only, > 0
     const char *audio;          // of films: a file with sound; NULL: none
-    double audio_from, seconds; // where in it the film begins, and how long that is
+    double audio_from, seconds; // the part of it that the film has: its beginning and length
     bool opaque;                // no frame has alpha below 255
     bool overwrite;             // files of the same name may be replaced
     bool fast;                  // intermediate files: larger but written faster

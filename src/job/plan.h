@@ -149,7 +149,7 @@ typedef struct FlResume {
  * and the digests of all files that it read and wrote, mean that they are finished. For renders of
  * frames and films alone, without layers, paint, statistics or a report. Frames that exist and are
  * to be kept are finished in any case. Reads no drawing. Sets plan->made_from if the request and
- * what it reads are the same.
+ * its inputs are the same.
  */
 FlFinished fl_resume_look(FlPlan *plan, const FlSequence *sequence);
 

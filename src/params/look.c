@@ -73,7 +73,7 @@ static bool unpack_file(Unpacking *unpacking, zip_uint64_t k, GError **error)
     const char *name = zip_get_name(unpacking->zip, k, ZIP_FL_ENC_RAW);
     if (!name || !is_of_look(name))
         return refuse(unpacking, name ? name : "",
-                      "is none of a look; expected " FL_LOOK_CONFIG
+                      "does not belong to a look; expected " FL_LOOK_CONFIG
                       ", thumbnail.png, styles/… or files/…",
                       error);
     g_autofree char *path = g_build_filename(unpacking->folder, name, NULL);
