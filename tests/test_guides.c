@@ -464,6 +464,25 @@ static void motion_may_be_unknown_and_may_be_none(void)
     }
 }
 
+static void a_part_of_a_film_knows_its_frames_by_their_numbers(void)
+{
+    Draw draw = sliding_disc;
+    g_autoptr(GError) error = NULL;
+    g_auto(FlGuides) whole = {0}, part = {0};
+    const FlGuideSource source = {W, H, 2, draw_mask, NULL, &draw, .first = 3};
+    g_autoptr(FlGuideSequence) s = sequence_of(&draw, 6, &unsmoothed);
+    g_autoptr(FlGuideSequence) p = fl_guide_sequence_new(&source, &unsmoothed, &error);
+    g_assert_no_error(error);
+    for (int frame = 3; frame < 5; frame++) {
+        get(s, frame, &whole);
+        get(p, frame, &part);
+        g_assert_cmpmem(whole.mask, (size_t)W * H, part.mask, (size_t)W * H);
+        g_assert_cmpmem(whole.distance, W * H * sizeof(float), part.distance,
+                        W * H * sizeof(float));
+    }
+    g_assert_false(fl_guide_sequence_rests(p, 4));
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -485,6 +504,7 @@ int main(int argc, char **argv)
     TEST(stored_integers_of_any_size_come_back);
     TEST(same_bytes_on_any_thread_count);
     TEST(motion_may_be_unknown_and_may_be_none);
+    TEST(a_part_of_a_film_knows_its_frames_by_their_numbers);
 #undef TEST
     return g_test_run();
 }

@@ -110,7 +110,7 @@ static bool outline_of(Builder *b, int frame, FlOutline **outline, GError **erro
     OutlineSlot *slot = &b->outlines[frame % b->n_slots];
     if (slot->frame != frame) {
         const OutlineSlot *last = &b->outlines[(frame + b->n_slots - 1) % b->n_slots];
-        if (!source->mask(source->data, frame, b->mask, error))
+        if (!source->mask(source->data, source->first + frame, b->mask, error))
             return false;
         FlOutline *fresh = last->outline && fl_outline_equal(last->outline, b->mask)
                                ? fl_outline_ref(last->outline)
@@ -288,7 +288,7 @@ static bool given_flow(Builder *b, int frame, const FlOutline *outline, float **
     const FlGuideSource *source = &b->sequence->source;
     const FlRect *box = &outline->box;
     g_autofree float *given = room_for_motion(source, error);
-    if (!given || !source->flow(source->data, frame, given, error))
+    if (!given || !source->flow(source->data, source->first + frame, given, error))
         return false;
     float *out = *flow = fl_alloc(2 * fl_rect_pixels(*box), sizeof *out, "a given flow", error);
     if (!out)
@@ -416,7 +416,7 @@ static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, int32_
     if (!outline_of(b, frame - 1, &outlines.before, error))
         return false;
     g_autofree float *given = room_for_motion(source, error);
-    if (!given || !source->motion(source->data, frame, &outlines, given, error))
+    if (!given || !source->motion(source->data, source->first + frame, &outlines, given, error))
         return false;
     const size_t values = 2 * (size_t)source->width * (size_t)source->height;
     if (fl_is_blank((const uint8_t *)given, values * sizeof *given))

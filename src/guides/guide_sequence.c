@@ -150,13 +150,14 @@ static bool get_motion(const FlGuideSequence *sequence, int frame, FlGuides *gui
 
 bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame)
 {
-    return sequence->frames[frame].rests;
+    return sequence->frames[frame - sequence->source.first].rests;
 }
 
 bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                               GError **error)
 {
     const FlRect part = fl_guides_rect(guides);
+    frame -= sequence->source.first;
     g_assert(frame >= 0 && frame < sequence->source.n_frames);
     const size_t n = fl_rect_pixels(part);
     memset(guides->mask, 0, n);
@@ -188,6 +189,7 @@ bool fl_guide_sequence_distance(const FlGuideSequence *sequence, int frame, FlGu
                                 GError **error)
 {
     const FlRect part = fl_guides_rect(guides);
+    frame -= sequence->source.first;
     const FlRect box = sequence->frames[frame].box;
     g_autofree uint8_t *shape = fl_alloc_unset(2 * fl_rect_pixels(box), 1, "coverages", error);
     memset(guides->mask, 0, fl_rect_pixels(part));

@@ -74,6 +74,7 @@ typedef struct FlGuideSource {
      */
     bool (*motion)(void *data, int frame, const FlOutlinePair *outlines, float *motion,
                    GError **error);
+    int first; // number of the first frame; every frame is known by its number
 } FlGuideSource;
 
 /** The guides of a whole sequence. Its memory does not grow with the number of frames (FlSpill). */

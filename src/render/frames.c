@@ -463,7 +463,8 @@ static void recall(FlFrames *frames)
     const FlOutputs *o = &plan->out;
     g_autoptr(FlFacts) film = plan->cache ? fl_plan_facts_of_paint(plan) : NULL;
     const FlKeeping keeping = {plan->cache, plan->inputs, film,
-                               .takes = !o->report && !o->dump && !o->ebsynth};
+                               .takes = !o->report && !o->dump && !o->ebsynth,
+                               .drafts = frames->small};
     fl_painters_recall(&frames->painters, &plan->shapes, &keeping);
 }
 

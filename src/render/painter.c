@@ -129,43 +129,59 @@ static bool open_engine(FlPainter *painter, GError **error)
     return painter->paint != NULL;
 }
 
-/* Makes the guides for the whole film, unless the painter has kept them; kept[0] are the last. */
-static bool make_sequence(FlPainter *painter, GError **error)
+/* All that the guides from a source are made from. */
+static FlDigest made_of(const FlPainter *painter, const FlGuideSource *source,
+                        const FlGuideParams *params)
 {
-    const FlGuideSource source = fl_painter_guide_source(painter);
     const FlRegionSettings *settings = &painter->plan->settings;
     const FlFluidDials dials = fl_fluid_dials(settings);
-    const FlGuideParams params = fl_guide_params(&settings->params);
-    const int how[] = {source.width,
-                       source.height,
+    const int how[] = {source->width,
+                       source->height,
                        painter->result.rect.x,
                        painter->result.rect.y,
                        painter->result.rect.width,
                        painter->result.rect.height,
-                       source.n_frames,
+                       source->first,
+                       source->n_frames,
                        painter->wrap,
                        settings->hold,
-                       source.flow != NULL,
-                       source.motion != NULL};
-    FlDigest made_of = {0};
-    fl_digest_add(&made_of, how, sizeof how);
-    fl_digest_add(&made_of, &params, sizeof params);
-    fl_digest_add(&made_of, &dials, sizeof dials);
-    fl_digest_add(&made_of, &settings->wetness, sizeof settings->wetness);
+                       source->flow != NULL,
+                       source->motion != NULL};
+    FlDigest digest = {0};
+    fl_digest_add(&digest, how, sizeof how);
+    fl_digest_add(&digest, params, sizeof *params);
+    fl_digest_add(&digest, &dials, sizeof dials);
+    fl_digest_add(&digest, &settings->wetness, sizeof settings->wetness);
     if (painter->plan->styles) { // its frames
-        fl_digest_add_text(&made_of, painter->plan->styles->text);
-        fl_digest_add(&made_of, &painter->plan->style_key, sizeof painter->plan->style_key);
+        fl_digest_add_text(&digest, painter->plan->styles->text);
+        fl_digest_add(&digest, &painter->plan->style_key, sizeof painter->plan->style_key);
     }
+    return digest;
+}
+
+/* Makes guides, unless the painter has kept them; kept[0] are the last. alone: where those of the
+ * whole film are not kept, they are those of a film of the painter's picture and the next one. */
+static bool make_sequence(FlPainter *painter, bool alone, GError **error)
+{
+    FlGuideSource source = fl_painter_guide_source(painter);
+    const FlGuideParams params = fl_guide_params(&painter->plan->settings.params);
+    const bool draft = painter->plan->settings.detail == FL_DETAIL_DRAFT;
+    const int most = draft ? FL_KEPT_GUIDES : 1; // those of drafts are small
     FlKeptGuides *kept = painter->kept;
-    const int last = settings->detail == FL_DETAIL_DRAFT ? FL_KEPT_GUIDES - 1 : 0; // they are small
+    FlDigest digest = made_of(painter, &source, &params);
     int k = 0;
-    while (k < last && !fl_digest_is_same(made_of, kept[k].made_of))
+    while (k < most && !fl_digest_is_same(digest, kept[k].made_of))
         k++;
-    FlKeptGuides guides = kept[k];
-    memmove(kept + 1, kept, (size_t)k * sizeof *kept);
-    if (!guides.sequence || !fl_digest_is_same(made_of, guides.made_of)) {
+    painter->alone = alone && k == most ? painter->picture : NONE;
+    if (painter->alone != NONE) {
+        source.first = painter->picture, source.n_frames = MIN(2, source.n_frames - source.first);
+        digest = made_of(painter, &source, &params);
+    }
+    FlKeptGuides guides = kept[MIN(k, most - 1)];
+    memmove(kept + 1, kept, (size_t)MIN(k, most - 1) * sizeof *kept);
+    if (k == most) {
         fl_guide_sequence_free(guides.sequence);
-        guides.made_of = made_of;
+        guides.made_of = digest;
         guides.sequence = fl_painter_open_fluid(painter, error)
                               ? fl_guide_sequence_new(&source, &params, error)
                               : NULL;
@@ -185,7 +201,8 @@ bool fl_painter_prepare(FlPainter *painter, GError **error)
     if (painter->origin != FL_FROM_ENGINE)
         return true;
     fl_reuse_begin(&painter->reuse, painter->result.rect);
-    return make_sequence(painter, error) && open_engine(painter, error);
+    return (painter->reuse.drafts || make_sequence(painter, false, error)) &&
+           open_engine(painter, error);
 }
 
 /* ---- a picture ------------------------------------------------------------------------------- */
@@ -234,11 +251,22 @@ static bool run_engine(FlPainter *painter, GError **error)
            keep_picture(painter, error);
 }
 
+/* A draft begins with guides of its picture, which are made quickly, and those of the film follow
+ * with another picture. */
+static bool guide_draft(FlPainter *painter, GError **error)
+{
+    const bool guided =
+        painter->sequence && (painter->alone == NONE || painter->alone == painter->picture);
+    return guided || make_sequence(painter, !painter->sequence, error);
+}
+
 /* Chooses the origin of picture k, which follows `last`, and makes its guides if it needs any. */
 static bool choose_origin(FlPainter *painter, int k, int last, GError **error)
 {
     FlPaintedRegion *result = &painter->result;
     result->from = fl_reuse_has(&painter->reuse, k) ? FL_FROM_CACHE : painter->origin;
+    if (result->from == FL_FROM_ENGINE && !guide_draft(painter, error))
+        return false;
     if (result->from == FL_FROM_ENGINE && fl_painter_rests(painter, last))
         result->from = FL_FROM_REST;
     const bool guided =
@@ -372,7 +400,6 @@ int fl_painter_start_at(FlPainter *painter, int frame, GError **error)
     FlReuse *reuse = &painter->reuse;
     if (painter->origin != FL_FROM_ENGINE || painter->plan->loops || painter->next == k + 1)
         return fl_painter_seek(painter, frame, error);
-    reuse->drafts = true;
     const bool known = painter->next == k || fl_reuse_has(reuse, k);
     if (!known && k > 0 && fl_reuse_has(reuse, k - 1))
         painter->next = k - 1;

@@ -11,7 +11,7 @@
 
 enum { FL_KEPT_GUIDES = 8 }; // a page that shows every style goes through as many kinds
 
-/** The guides of a region for a whole film, made from all that has this digest. */
+/** Guides of a region, made from all that has this digest. */
 typedef struct FlKeptGuides {
     FlGuideSequence *sequence; // NULL: none
     FlDigest made_of;
@@ -34,7 +34,8 @@ typedef struct FlPainter {
     int asked, answer; // a picture, and the one around which its depth is measured
     double cost_s;  // of the last picture that was synthesised, by one thread; 0 before the first
     FlFluid *fluid; // while guides are made; NULL: the region has none
-    FlGuideSequence *sequence; // kept[0]
+    FlGuideSequence *sequence; // kept[0]; NULL: a draft has made none yet
+    int alone;                 // picture that the guides are of; -1: all
     FlKeptGuides kept[FL_KEPT_GUIDES];
     FlGuides guides; // of the picture, for the engine; empty: it was not painted
     FlGuides shown;  // the same for inspection, where the picture has another size; else empty

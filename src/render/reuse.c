@@ -67,6 +67,7 @@ void fl_reuse_recall(FlReuse *reuse, const FlKeeping *keeping, const FlShapes *s
     reuse->film = fl_facts_digest(reuse->facts);
     if (reuse->takes)
         recall(reuse, shapes, p);
+    reuse->drafts = keeping->drafts && !reuse->known && !shapes->painted[p].loops;
 }
 
 void fl_reuse_clear(FlReuse *reuse)

@@ -46,6 +46,7 @@ typedef struct FlKeeping {
     FlInputs *inputs;    // know the digests of styles and flow
     const FlFacts *film; // NULL without a cache
     bool takes;          // false while guides or statistics are inspected
+    bool drafts;         // of a film, but for regions that loop
 } FlKeeping;
 
 /** Looks up the pictures of shapes->painted[p]. */

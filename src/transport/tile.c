@@ -54,18 +54,29 @@ bool fl_transport_style_read(FlTransportStyle *style, const char *folder, GError
 /* ---- the tile ----------------------------------------------------------------------------------
  */
 
+/* Weights 1 4 1. */
+static float smoothed(float before, float at, float after)
+{
+    return (before + 4 * at + after) / 6;
+}
+
 /* The values of cubic B-splines minus their coefficients: one smoothing, the sides meet. */
 static void smooth(const float *in, int n, float *half, float *out)
 {
-    for (int y = 0; y < n; y++)
+    for (int y = 0; y < n; y++) {
+        const float *row = in + y * n;
+        float *to = half + y * n;
+        to[0] = smoothed(row[n - 1], row[0], row[1]);
+        for (int x = 1; x < n - 1; x++)
+            to[x] = smoothed(row[x - 1], row[x], row[x + 1]);
+        to[n - 1] = smoothed(row[n - 2], row[n - 1], row[0]);
+    }
+    for (int y = 0; y < n; y++) {
+        const float *row = half + y * n;
+        const float *before = half + (y + n - 1) % n * n, *after = half + (y + 1) % n * n;
         for (int x = 0; x < n; x++)
-            half[y * n + x] =
-                (in[y * n + (x + n - 1) % n] + 4 * in[y * n + x] + in[y * n + (x + 1) % n]) / 6;
-    for (int y = 0; y < n; y++)
-        for (int x = 0; x < n; x++)
-            out[y * n + x] =
-                (half[(y + n - 1) % n * n + x] + 4 * half[y * n + x] + half[(y + 1) % n * n + x]) /
-                6;
+            out[y * n + x] = smoothed(before[x], row[x], after[x]);
+    }
 }
 
 /* Coefficients whose spline is the values, smoothed so often; each time has a variance of a third
