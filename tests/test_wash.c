@@ -59,7 +59,7 @@ static Tones *lay_frame_of(const FlDrawing *drawing, int frame, const FlWashStyl
     const int n = fl_drawing_regions(drawing);
     FlRegionSettings settings;
     fl_region_settings_init(&settings);
-    const FlStyleInstance instance = {.wash = *style};
+    const FlStyleInstance instance = {.wash = *style, .front = {.width = 1}};
     g_autofree FlPaintedRegion *region = g_new0(FlPaintedRegion, n);
     g_autofree const FlPaintedRegion **painted = g_new0(const FlPaintedRegion *, n);
     g_autofree int *painted_of = g_new0(int, n);
@@ -70,7 +70,8 @@ static Tones *lay_frame_of(const FlDrawing *drawing, int frame, const FlWashStyl
                                       .style = &instance,
                                       .from = FL_FROM_ENGINE,
                                       .share = 1,
-                                      .anchor = fl_drawing_anchor(drawing, r, frame)};
+                                      .anchor = fl_drawing_anchor(drawing, r, frame),
+                                      .drift = fl_drawing_drift(drawing, r, frame, false)};
         region[r].n_limbs = fl_drawing_limbs(drawing, r, frame, region[r].limb);
         painted[r] = &region[r], painted_of[r] = r;
     }
@@ -235,6 +236,41 @@ static void shapes_apart_stay_each(void)
     g_test_message("mean of ln %.3f, %.3f", large, small);
     g_assert_cmpfloat(fabs(large), <, .02);
     g_assert_cmpfloat(fabs(small), <, .02);
+}
+
+/* The tone of the left half of a disc less that of the right one. */
+static double leftwards(const FlDrawing *drawing, int frame, int x)
+{
+    static const FlWashStyle even = {.wash = 1};
+    g_autofree Tones *tones = lay_frame(drawing, frame, &even);
+    double half[2] = {0};
+    for (int i = 0; i < W * H; i++)
+        if (tones->tone[i] > BARE)
+            half[i % W >= x] += (double)tones->tone[i];
+    return (half[0] - half[1]) / (G_PI / 2 * 70 * 70);
+}
+
+/* A disc moves to the right, and rests. */
+static void paint_that_moves_is_dark_behind(void)
+{
+    enum { MOVES = 24, FRAMES = 42 };
+    g_auto(GStrv) frames = g_new0(char *, FRAMES + 1);
+    for (int t = 0; t < FRAMES; t++)
+        frames[t] = g_strdup_printf("<circle id='d' fill='#5bb7d8' cx='%d' cy='150' r='70'/>",
+                                    90 + 8 * MIN(t, MOVES));
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film(folder, (const char *const *)frames);
+    const double moving = leftwards(drawing, 0, 90);
+    double before = moving;
+    for (int t = 1; t < FRAMES; t++) {
+        const double now = leftwards(drawing, t, 90 + 8 * MIN(t, MOVES));
+        g_assert_cmpfloat(fabs(now - before), <, .06); // it turns slowly
+        before = now;
+    }
+    g_test_message("darker behind by %.2f ln, at rest by %.2f", moving, before);
+    g_assert_cmpfloat(moving, >, .1);
+    g_assert_cmpfloat(before, <, -.1);
+    g_assert_cmpfloat(before, ==, leftwards(drawing, FRAMES - 2, 90 + 8 * MOVES));
 }
 
 static double correlation(const float *a, const float *b, int n)
@@ -744,6 +780,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/each-of-many-fills-stays", each_of_many_fills_stays);
     g_test_add_func("/wash/light-paint-has-its-light-above", light_paint_has_its_light_above);
     g_test_add_func("/wash/shapes-apart-stay-each", shapes_apart_stay_each);
+    g_test_add_func("/wash/paint-that-moves-is-dark-behind", paint_that_moves_is_dark_behind);
     g_test_add_func("/wash/it-rides-with-its-figure", it_rides_with_its_figure);
     g_test_add_func("/wash/a-limb-carries-its-own", a_limb_carries_its_own);
     g_test_add_func("/wash/still-figures-do-not-change", still_figures_do_not_change);

@@ -51,6 +51,7 @@ typedef struct FlPaintedRegion {
     bool more;                        // the next one of the list is the region in its next style
     int width, height;                // of the drawing as it is painted, px
     FlAnchor anchor;                  // of the region in the picture's frame
+    FlDrift drift;                    // of the anchor
     int n_limbs;
     FlLimb limb[FL_LIMBS]; // likewise
     int exposure;          // of its amounts; 0: as the paint itself asks for

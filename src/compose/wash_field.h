@@ -10,6 +10,7 @@ typedef struct FlWashPart {
     int region;
     FlAnchor anchor;
     const FlLimb *limb; // NULL: all of it
+    float light[2];     // FlWashField.light, turned against its motion
     float *weight;      // of the part in the wash, at each point
 } FlWashPart;
 
@@ -24,10 +25,11 @@ typedef struct FlWashField {
     float across[2]; // vector across the passes of the brush
     FlWashPart *part;
     int n_parts;
-    float *planes; // memory of the planes below and of the parts' weights
-    float *mask;   // coverage at each point, as if no other shape lay over it
-    float *side;   // -1 light side .. 1 shadow side
-    float *around; // the mask, spread as far as the shapes are large
+    float *planes;      // memory of the planes below and of the parts' weights
+    float *mask;        // coverage at each point, as if no other shape lay over it
+    float *light_at[2]; // of its parts, at each point
+    float *side;        // -1 light side .. 1 shadow side
+    float *around;      // the mask, spread as far as the shapes are large
     float *room[FL_WASH_ROOMS];
     float *map[FL_MAPS]; // shares of dials at each point, from control maps; NULL: all of them
     float *turned;       // three planes: scratch of blurs
@@ -60,6 +62,9 @@ void fl_field_fill_masks(const FlWashField *field, const FlWashes *washes, int w
 
 /** Divides the points of a region among its limbs, by their distance. */
 void fl_field_divide(const FlWashField *field);
+
+/** Finds FlWashField.light_at. */
+void fl_field_find_light(const FlWashField *field);
 
 /** Finds FlWashField.side: the place of each point along the light, from the middle of the shape
  * around the point, as a share of its extent: a small shape is taken whole, a large one near the

@@ -59,7 +59,7 @@ bool fl_field_alloc(FlWashField *field, GError **error)
     float *own = fl_alloc(n * FL_WASH_PLANES, sizeof *own, "a wash", error);
     for (int k = 0; k < FL_WASH_PLANES; k++)
         wash->plane[k] = own ? own + (size_t)k * n : NULL;
-    const size_t own_planes = 6 + FL_WASH_ROOMS;
+    const size_t own_planes = 8 + FL_WASH_ROOMS;
     float *planes =
         own ? fl_alloc(n * (own_planes + (size_t)field->n_parts), sizeof *planes, "a wash", error)
             : NULL;
@@ -67,8 +67,9 @@ bool fl_field_alloc(FlWashField *field, GError **error)
         return false;
     field->mask = planes, field->side = planes + n, field->around = planes + 2 * n;
     field->turned = planes + 3 * n;
+    field->light_at[0] = planes + 6 * n, field->light_at[1] = planes + 7 * n;
     for (size_t k = 0; k < FL_WASH_ROOMS; k++)
-        field->room[k] = planes + (6 + k) * n;
+        field->room[k] = planes + (8 + k) * n;
     for (int k = 0; k < field->n_parts; k++)
         field->part[k].weight = planes + (own_planes + (size_t)k) * n;
     return true;
@@ -230,6 +231,19 @@ void fl_field_divide(const FlWashField *field)
 
 /* ---- light and shadow, pools ----------------------------------------------------------------- */
 
+void fl_field_find_light(const FlWashField *field)
+{
+    for (size_t i = 0; i < fl_wash_points(field->wash); i++) {
+        float all = 1e-6f, x = all * field->light[0], y = all * field->light[1];
+        for (int k = 0; k < field->n_parts; k++) {
+            const FlWashPart *part = &field->part[k];
+            x += part->weight[i] * part->light[0], y += part->weight[i] * part->light[1];
+            all += part->weight[i];
+        }
+        field->light_at[0][i] = x / all, field->light_at[1][i] = y / all;
+    }
+}
+
 void fl_field_find_side(const FlWashField *field)
 {
     const FlWash *wash = field->wash;
@@ -238,8 +252,8 @@ void fl_field_find_side(const FlWashField *field)
     const size_t n = fl_wash_points(wash);
     for (size_t i = 0; i < n; i++) {
         const int x = (int)(i % (size_t)wash->width), y = (int)(i / (size_t)wash->width);
-        along[i] = px * (field->light[0] * (float)(x - wash->width / 2) +
-                         field->light[1] * (float)(y - wash->height / 2));
+        along[i] = px * (field->light_at[0][i] * (float)(x - wash->width / 2) +
+                         field->light_at[1][i] * (float)(y - wash->height / 2));
         mean[i] = along[i], square[i] = along[i] * along[i];
     }
     memcpy(field->around, field->mask, n * sizeof *mean);
@@ -247,7 +261,8 @@ void fl_field_find_side(const FlWashField *field)
     mean_inside(field, mean, field->size, field->around);
     mean_inside(field, square, field->size, field->around);
     for (size_t i = 0; i < n; i++) {
-        const float spread = sqrtf(MAX(square[i] - mean[i] * mean[i], 0));
+        const float strength = hypotf(field->light_at[0][i], field->light_at[1][i]) + 1e-6f;
+        const float spread = sqrtf(MAX(square[i] - mean[i] * mean[i], 0)) / strength;
         along[i] = fl_clamp((along[i] - mean[i]) / (1.9f * spread + 2), -1.4f, 1.4f);
     }
 }
@@ -301,7 +316,8 @@ void fl_field_find_pools(const FlWashField *field, float *pool)
             const float gx = inside[i + 1] - inside[i - 1],
                         gy = inside[i + width] - inside[i - width];
             const float steep = sqrtf(gx * gx + gy * gy) + 1e-3f;
-            const float face = (-.6f * field->light[0] * gx - field->light[1] * gy) / steep;
+            const float face =
+                (-.6f * field->light_at[0][i] * gx - field->light_at[1][i] * gy) / steep;
             const float edge = fl_clamp(2 - 2 * inside[i], 0, 1);
             pool[i] = fl_clamp(face, 0, 1) * sqrtf(fl_clamp(face, 0, 1)) * edge * edge;
         }

@@ -6,7 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-#define STEP_PX 5 // px of the page between points
+#define STEP_PX 5    // px of the page between points
+#define SLOW_PX 1.5f // px of the page a frame at which motion turns the light half way
+#define MOVED 1.5f   // strength of light and shadow in what moves, as a share of that at rest
 
 /* ---- a wash ---------------------------------------------------------------------------------- */
 
@@ -114,6 +116,22 @@ static void find_box(FlWash *wash, const FlComposeInput *input, FlRect around)
     wash->height = (wash->box.height + step - 1) / step + 1;
 }
 
+/* The side of the shadow of a region: paint that moves is dark behind, where it dries first, and
+ * pale ahead, where it is wet. A ground has its own light. */
+static void turn_light(const FlWashField *field, const FlPaintedRegion *painted, float light[2])
+{
+    const FlComposeInput *input = field->input;
+    const FlDrift *drift = &painted->drift;
+    const float side = painted->anchor.side;
+    const float of_page = side * side / ((float)input->width * (float)input->height);
+    const float wet = MIN((float)painted->settings->front * painted->style->front.width, 1) *
+                      (1 - fl_ease(.22f, .4f, of_page));
+    const float back = wet / (drift->pace + SLOW_PX * input->paper_px);
+    const float rest = 1 - back * hypotf(drift->x, drift->y);
+    light[0] = rest * field->light[0] - MOVED * back * drift->x;
+    light[1] = rest * field->light[1] - MOVED * back * drift->y;
+}
+
 static void add_region(FlWashField *field, int region)
 {
     const FlPaintedRegion *painted = field->input->painted[field->input->painted_of[region]];
@@ -124,8 +142,10 @@ static void add_region(FlWashField *field, int region)
     field->part = g_renew(FlWashPart, field->part, field->n_parts + n);
     for (int k = 0; k < n; k++) {
         const FlLimb *limb = painted->n_limbs > 0 ? &painted->limb[k] : NULL;
-        field->part[field->n_parts++] =
-            (FlWashPart){region, limb ? limb->anchor : painted->anchor, limb, NULL};
+        FlWashPart *part = &field->part[field->n_parts++];
+        *part = (FlWashPart){
+            .region = region, .anchor = limb ? limb->anchor : painted->anchor, .limb = limb};
+        turn_light(field, painted, part->light);
     }
 }
 
@@ -148,6 +168,8 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
 {
     FlRect around = {0, 0, 0, 0};
     FlWashField field = {.wash = &washes->wash[w], .input = input};
+    const float angle = (float)(field.wash->painted->settings->light * G_PI / 180);
+    field.light[0] = cosf(angle), field.light[1] = sinf(angle);
     for (int r = 0; r < draws->n; r++) {
         if (washes->of_draw[r] != w)
             continue;
@@ -157,13 +179,12 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
     find_box(field.wash, input, around);
     field.size = size_of(input, field.wash->painted->region);
     field.wash->brush_px = fl_clamp(.3f * field.size, 34, 75);
-    const float angle = (float)(field.wash->painted->settings->light * G_PI / 180);
-    field.light[0] = cosf(angle), field.light[1] = sinf(angle);
     find_across(&field);
     const bool made = fl_field_alloc(&field, error) && read_maps(&field, error);
     if (made) {
         fl_field_fill_masks(&field, washes, w, draws);
         fl_field_divide(&field);
+        fl_field_find_light(&field);
         fl_field_find_side(&field);
         fl_field_fill_noise(&field);
         put_together(&field);

@@ -59,6 +59,12 @@ typedef struct FlAnchor {
     float side;           // of a square as large as the region's shapes, px; the same in all frames
 } FlAnchor;
 
+/** The motion of an anchor through some frames, px a frame. */
+typedef struct FlDrift {
+    float x, y;
+    float pace; // the mean of its speed, whichever way it went
+} FlDrift;
+
 /** Finds the places that n points of a row had when their anchor was at rest, times `scale`; the
  * points lie `step` px apart, from (x, y) on. */
 void fl_anchor_rest_row(const FlAnchor *anchor, int x, int y, int step, int n, float scale,
@@ -122,6 +128,10 @@ bool fl_drawing_stands_still(const FlDrawing *drawing);
 
 /** A region's anchor in a frame; it depends on no other region. */
 FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame);
+
+/** The mean motion of a region's anchor over the frames up to one, of which the middle ones weigh
+ * most; before its first frame a region moves as after it. loop: frame 0 follows the last. */
+FlDrift fl_drawing_drift(const FlDrawing *drawing, int region, int frame, bool loop);
 
 /** The limbs of a region that are seen in a frame, FL_LIMBS at most; none if its shapes move as one
  * through the film. Returns: their number. */

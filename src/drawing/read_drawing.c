@@ -68,6 +68,28 @@ FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame)
     return drawing->frame[frame].anchor[region];
 }
 
+#define DRIFT_FRAMES 16
+
+FlDrift fl_drawing_drift(const FlDrawing *drawing, int region, int frame, bool loop)
+{
+    const int n = fl_drawing_frames(drawing);
+    const int first = MIN(fl_drawing_region(drawing, region)->first_frame, MAX(n - 2, 0));
+    const float all = DRIFT_FRAMES * (DRIFT_FRAMES + 1) * (DRIFT_FRAMES + 2) / 6.f;
+    FlDrift drift = {0};
+    for (int k = 0; k < DRIFT_FRAMES; k++) {
+        const int before = frame - k - 1;
+        const int from = loop ? (before % n + n) % n : CLAMP(before, first, MAX(n - 2, first));
+        const FlAnchor *was = &drawing->frame[from].anchor[region];
+        const FlAnchor *is = &drawing->frame[(from + 1) % n].anchor[region];
+        const float share = (float)((k + 1) * (DRIFT_FRAMES - k)) / all;
+        if (was->cosine == 0 && was->sine == 0)
+            continue; // it is not there yet
+        drift.x += share * (is->x - was->x), drift.y += share * (is->y - was->y);
+        drift.pace += share * hypotf(is->x - was->x, is->y - was->y);
+    }
+    return drift;
+}
+
 int fl_drawing_limbs(const FlDrawing *drawing, int region, int frame, FlLimb *limbs)
 {
     const GArray *all = drawing->frame[frame].limbs;

@@ -352,6 +352,8 @@ bool fl_painter_frame(FlPainter *painter, int frame, GError **error)
     if (drawing) {
         const int region = painter->plan->region;
         painter->result.anchor = fl_drawing_anchor(drawing, region, index * hold);
+        painter->result.drift =
+            fl_drawing_drift(drawing, region, index * hold, painter->shapes->loop);
         painter->result.n_limbs =
             fl_drawing_limbs(drawing, region, index * hold, painter->result.limb);
     }
