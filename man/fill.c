@@ -17,12 +17,6 @@ static void print_text(const char *text)
     }
 }
 
-static void print_name(const char *field)
-{
-    for (; *field; field++)
-        putchar(*field == '_' ? '-' : *field);
-}
-
 static void print_line(const char *text)
 {
     print_text(text);
@@ -31,22 +25,20 @@ static void print_line(const char *text)
 
 #define TEXT_INT(value) #value
 #define TEXT_FLOAT(value) #value
-#define TEXT_DIAL(value) #value
+#define TEXT_WEIGHT(value) #value
 #define TEXT_BOOL(value) ((value) ? "on" : "off")
 #define TEXT_LIST(value) value
 
 #define ARGUMENT_INT "number"
 #define ARGUMENT_FLOAT "number"
-#define ARGUMENT_DIAL "number"
+#define ARGUMENT_WEIGHT "number"
 #define ARGUMENT_BOOL "on | off"
 #define ARGUMENT_LIST "number,..."
 
-static void print_parameter(const char *field, const char *argument, bool has_range, double min,
+static void print_parameter(const char *name, const char *argument, bool has_range, double min,
                             double max, const char *unit, const char *values[5], const char *help)
 {
-    fputs(".It Fl -", stdout);
-    print_name(field);
-    printf(" Ar %s\n", argument);
+    printf(".It Fl -%s Ar %s\n", name, argument);
     print_line(help);
     if (has_range)
         printf("%g to %g%s%s;\n", min, max, *unit ? " " : "", unit);
@@ -60,9 +52,9 @@ static void print_parameter(const char *field, const char *argument, bool has_ra
 
 static void print_parameters(void)
 {
-#define FL_PARAM(type, field, unit, min, max, usual, fluidymation, thesis, lazyfluids, steady,     \
-                 help)                                                                             \
-    print_parameter(#field, ARGUMENT_##type, strcmp(#type, "BOOL") != 0, min, max, unit,           \
+#define FL_PARAM(type, field, name, unit, min, max, usual, fluidymation, thesis, lazyfluids,       \
+                 steady, help)                                                                     \
+    print_parameter(name, ARGUMENT_##type, strcmp(#type, "BOOL") != 0, min, max, unit,             \
                     (const char *[5]){TEXT_##type(usual), TEXT_##type(fluidymation),               \
                                       TEXT_##type(thesis), TEXT_##type(lazyfluids),                \
                                       TEXT_##type(steady)},                                        \
@@ -207,11 +199,9 @@ static void print_keyed(void)
     for (int i = 0; i < N_OPTIONS; i++)
         if (is(options[i].type, "DIAL"))
             printf(" ,\n.Ic %s", options[i].name);
-#define FL_PARAM(type, field, ...)                                                                 \
-    if (is(#type, "DIAL")) {                                                                       \
-        printf(" ,\n.Ic ");                                                                        \
-        print_name(#field);                                                                        \
-    }
+#define FL_PARAM(type, field, name, ...)                                                           \
+    if (is(#type, "WEIGHT"))                                                                       \
+        printf(" ,\n.Ic " name);
 #include "params/params.def"
 #undef FL_PARAM
     puts(" .");

@@ -1,5 +1,5 @@
 /* The parameters: presets, ranges, messages. */
-#include "params/params.h"
+#include "params/options.h"
 
 #include "base/suggest.h"
 
@@ -38,19 +38,21 @@ static void the_published_values_are_those_of_the_papers(void)
 static void a_value_reads_back_as_it_was_written(void)
 {
     static const char *const cases[][2] = {{"w-temp", "2.5"},
-                                           {"uni_radius", "7"},
+                                           {"uni-radius", "7"},
                                            {"rotate", "off"},
                                            {"patchmatch-iterations", "9,8,7"}};
-    g_autoptr(FlParams) params = fl_params_new();
+    g_auto(FlRegionSettings) settings;
+    fl_region_settings_init(&settings);
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
         g_autoptr(GError) error = NULL;
-        fl_params_set(params, cases[i][0], cases[i][1], &error);
+        fl_region_settings_set(&settings, cases[i][0], cases[i][1], NULL, &error);
         g_assert_no_error(error);
-        g_autofree char *text = fl_params_get(params, cases[i][0]);
+        const FlOption *option = fl_option_find(FL_SCOPE_REGION, cases[i][0]);
+        g_autofree char *text = fl_option_get(option, &settings);
         g_assert_cmpstr(text, ==, cases[i][1]);
     }
-    g_assert_cmpint(fl_list_at(&params->patchmatch_iterations, 1), ==, 8);
-    g_assert_cmpint(fl_list_at(&params->patchmatch_iterations, 5), ==, 7);
+    g_assert_cmpint(fl_list_at(&settings.params.patchmatch_iterations, 1), ==, 8);
+    g_assert_cmpint(fl_list_at(&settings.params.patchmatch_iterations, 5), ==, 7);
 }
 
 static void a_bad_value_is_refused_with_range_and_unit(void)
@@ -65,28 +67,30 @@ static void a_bad_value_is_refused_with_range_and_unit(void)
         {"opt-iterations", "4,,1",
          "opt-iterations: “4,,1” is not 1 to 8 integers, each from 0 "
          "to 100"},
-        {"w-tmep", "1", "unknown parameter “w-tmep”; did you mean “w-temp”?"},
-        {"elephant", "1", "unknown parameter “elephant”"},
+        {"w-tmep", "1", "unknown key “w-tmep”; did you mean “w-temp”?"},
+        {"elephant", "1", "unknown key “elephant”"},
     };
-    g_autoptr(FlParams) params = fl_params_new();
-    g_autoptr(FlParams) before = fl_params_copy(params);
+    g_auto(FlRegionSettings) settings;
+    fl_region_settings_init(&settings);
+    const FlParams before = settings.params;
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
         g_autoptr(GError) error = NULL;
-        g_assert_false(fl_params_set(params, cases[i][0], cases[i][1], &error));
+        g_assert_false(fl_region_settings_set(&settings, cases[i][0], cases[i][1], NULL, &error));
         g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
         g_assert_cmpstr(error->message, ==, cases[i][2]);
     }
-    g_assert_cmpmem(params, sizeof *params, before, sizeof *before);
+    g_assert_cmpmem(&settings.params, sizeof before, &before, sizeof before);
 }
 
 static void every_parameter_has_help_without_full_stop(void)
 {
-    for (int i = 0; i < fl_param_count(); i++) {
-        const FlParamInfo *info = fl_param_info(i);
-        g_assert_cmpint(strlen(info->help), >, 10);
-        g_assert_false(g_str_has_suffix(info->help, "."));
-        g_assert_null(strchr(info->name, '_'));
-        g_assert_cmpint(fl_param_find(info->name), ==, i);
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *option = fl_option_at(i);
+        if (!option->preset)
+            continue;
+        g_assert_cmpint(strlen(option->help), >, 10);
+        g_assert_false(g_str_has_suffix(option->help, "."));
+        g_assert_null(strchr(option->name, '_'));
     }
 }
 

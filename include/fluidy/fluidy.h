@@ -11,7 +11,6 @@
 #include <fluidy/inspect.h>
 #include <fluidy/limits.h>
 #include <fluidy/paint.h>
-#include <fluidy/params.h>
 #include <fluidy/render.h>
 #include <fluidy/style.h>
 #include <fluidy/version.h>

@@ -24,7 +24,7 @@ static const char *placeholder(const FlOption *option)
         return "COLOUR|FILE";
     if (option->type == FL_OPTION_TINT)
         return "TINT";
-    const bool word = g_ascii_islower(*option->value) && option->type != FL_OPTION_PARAM;
+    const bool word = g_ascii_islower(*option->value) && option->group != FL_GROUP_PARAMETERS;
     return word ? "WORD" : option->value;
 }
 

@@ -408,13 +408,11 @@ static const char *kind_of(const FlOption *option)
     case FL_OPTION_REAL:
     case FL_OPTION_DIAL:
     case FL_OPTION_FIXED:
+    case FL_OPTION_FLOAT:
+    case FL_OPTION_WEIGHT:
         return "number";
     case FL_OPTION_STYLE:
         return "style";
-    case FL_OPTION_PARAM:
-        return strcmp(option->value, "N") == 0   ? "integer"
-               : strcmp(option->value, "X") == 0 ? "number"
-                                                 : "text";
     case FL_OPTION_FLAG:
     case FL_OPTION_SWITCH:
         return "switch";

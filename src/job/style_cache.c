@@ -82,15 +82,14 @@ static bool is_of_search(const char *name)
 
 static bool same_params(const FlParams *a, const FlParams *b)
 {
-    for (int i = 0; i < fl_param_count(); i++) {
-        if (is_of_search(fl_param_info(i)->name))
-            continue;
-        g_autofree char *x = fl_params_get(a, fl_param_info(i)->name);
-        g_autofree char *y = fl_params_get(b, fl_param_info(i)->name);
-        if (!g_str_equal(x, y))
-            return false;
+    bool same = true;
+    for (int i = 0; i < fl_option_count() && same; i++) {
+        const FlOption *option = fl_option_at(i);
+        const size_t at = option->offset - offsetof(FlRegionSettings, params);
+        same = !option->preset || is_of_search(option->name) ||
+               memcmp((const char *)a + at, (const char *)b + at, option->size) == 0;
     }
-    return true;
+    return same;
 }
 
 /* The frames of a recording in memory: fewer than the parameters allow if it is large; 0: all. */

@@ -7,18 +7,32 @@
 #include <math.h>
 #include <string.h>
 
-#define OFFSET_RENDER(field) offsetof(FlRenderOptions, field)
-#define OFFSET_REGION(field) offsetof(FlRegionSettings, field)
-#define OFFSET_PROGRAM(field) 0
+#define FIELD_RENDER(field) offsetof(FlRenderOptions, field), sizeof(((FlRenderOptions *)0)->field)
+#define FIELD_REGION(field)                                                                        \
+    offsetof(FlRegionSettings, field), sizeof(((FlRegionSettings *)0)->field)
+#define FIELD_PROGRAM(field) 0, 0
+
+#define VALUE_INT "N"
+#define VALUE_FLOAT "X"
+#define VALUE_WEIGHT "X"
+#define VALUE_BOOL "on|off"
+#define VALUE_LIST "N,…"
+
+/* A list stands in params.def as a string; numbers stand there as themselves. */
+#define TEXT_INT(value) #value
+#define TEXT_FLOAT(value) #value
+#define TEXT_WEIGHT(value) #value
+#define TEXT_BOOL(value) ((value) ? "on" : "off")
+#define TEXT_LIST(value) value
 
 static const FlOption lines[] = {
 #define FL_OPTION(scope, type, field, name, letter, value, unit, min, max, default_value, section, \
-                  bytes, group, help)                                                              \
+                  bytes, group, ...)                                                               \
     {name,                                                                                         \
      letter,                                                                                       \
      FL_SCOPE_##scope,                                                                             \
      FL_OPTION_##type,                                                                             \
-     OFFSET_##scope(field),                                                                        \
+     FIELD_##scope(field),                                                                         \
      value,                                                                                        \
      unit,                                                                                         \
      min,                                                                                          \
@@ -27,8 +41,17 @@ static const FlOption lines[] = {
      FL_SECTION_##section,                                                                         \
      FL_BYTES_##bytes,                                                                             \
      FL_GROUP_##group,                                                                             \
-     help},
+     __VA_ARGS__},
+#define FL_PARAM(type, field, name, unit, min, max, usual, fluidymation, thesis, lazyfluids,       \
+                 steady, help)                                                                     \
+    FL_OPTION(REGION, type, params.field, name, 0, VALUE_##type, unit, min, max,                   \
+              TEXT_##type(usual), REGION, VALUE, PARAMETERS, help,                                 \
+              (const char *const[]){TEXT_##type(usual), TEXT_##type(fluidymation),                 \
+                                    TEXT_##type(thesis), TEXT_##type(lazyfluids),                  \
+                                    TEXT_##type(steady)})
 #include "params/options.def"
+#include "params/params.def"
+#undef FL_PARAM
 #undef FL_OPTION
 };
 
@@ -36,38 +59,13 @@ static const FlOption lines[] = {
 
 int fl_option_count(void)
 {
-    return (int)G_N_ELEMENTS(lines) + fl_param_count();
-}
-
-static FlOption of_parameter(const FlParamInfo *info)
-{
-    static const char *const values[] = {"N", "X", "on|off", "N,…", "X"};
-    return (FlOption){.name = info->name,
-                      .scope = FL_SCOPE_REGION,
-                      .type = FL_OPTION_PARAM,
-                      .value = values[info->type],
-                      .unit = info->unit,
-                      .min = info->min,
-                      .max = info->max,
-                      .default_value = info->preset[FL_PRESET_DEFAULT],
-                      .section = FL_SECTION_REGION,
-                      .bytes = FL_BYTES_VALUE,
-                      .group = FL_GROUP_PARAMETERS,
-                      .help = info->help};
+    return (int)G_N_ELEMENTS(lines);
 }
 
 const FlOption *fl_option_at(int index)
 {
-    static FlOption *parameters;
     g_assert(index >= 0 && index < fl_option_count());
-    if (g_once_init_enter(&parameters)) {
-        FlOption *made = g_new(FlOption, fl_param_count());
-        for (int i = 0; i < fl_param_count(); i++)
-            made[i] = of_parameter(fl_param_info(i));
-        g_once_init_leave(&parameters, made);
-    }
-    const int n = (int)G_N_ELEMENTS(lines);
-    return index < n ? &lines[index] : &parameters[index - n];
+    return &lines[index];
 }
 
 const FlOption *fl_option_find(FlOptionScope scope, const char *name)
@@ -82,9 +80,8 @@ const FlOption *fl_option_find(FlOptionScope scope, const char *name)
 
 bool fl_option_can_be_keyed(const FlOption *option)
 {
-    if (option->type == FL_OPTION_PARAM)
-        return fl_param_info(fl_param_find(option->name))->type == FL_PARAM_DIAL;
-    return option->type == FL_OPTION_DIAL || strcmp(option->name, "style") == 0;
+    return option->type == FL_OPTION_DIAL || option->type == FL_OPTION_WEIGHT ||
+           option->type == FL_OPTION_STYLE;
 }
 
 const FlOption *fl_option_find_argument(const char *name)
@@ -142,7 +139,7 @@ static char *parameter_help(const FlOption *option)
 
 char *fl_option_help(const FlOption *option)
 {
-    if (option->type == FL_OPTION_PARAM)
+    if (option->group == FL_GROUP_PARAMETERS)
         return parameter_help(option);
     GString *help = g_string_new(option->help);
     g_autofree char *words = alternatives(option);
@@ -160,20 +157,25 @@ char *fl_option_help(const FlOption *option)
 static bool is_real(const FlOption *option)
 {
     return option->type == FL_OPTION_REAL || option->type == FL_OPTION_DIAL ||
-           option->type == FL_OPTION_FIXED;
+           option->type == FL_OPTION_FIXED || option->type == FL_OPTION_FLOAT ||
+           option->type == FL_OPTION_WEIGHT;
 }
 
 static bool is_number(const FlOption *option)
 {
-    return option->type == FL_OPTION_INT || option->type == FL_OPTION_COUNT || is_real(option);
+    return option->type == FL_OPTION_INT || option->type == FL_OPTION_COUNT ||
+           option->type == FL_OPTION_LIST || is_real(option);
 }
 
 bool fl_option_reject(const FlOption *option, const char *value, GError **error)
 {
     if (is_number(option)) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "“%s” is not %s from %.16g to %.16g%s%s",
-                    value, is_real(option) ? "a number" : "an integer", option->min, option->max,
-                    *option->unit ? " " : "", option->unit);
+                    value,
+                    is_real(option)                  ? "a number"
+                    : option->type == FL_OPTION_LIST ? "1 to 8 integers, each"
+                                                     : "an integer",
+                    option->min, option->max, *option->unit ? " " : "", option->unit);
         return false;
     }
     g_auto(GStrv) words = g_strsplit(option->value, "|", -1);
@@ -181,6 +183,74 @@ bool fl_option_reject(const FlOption *option, const char *value, GError **error)
     g_autofree char *hint = fl_did_you_mean(value, (const char *const *)words);
     g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "“%s” is not %s%s", value, list, hint);
     return false;
+}
+
+/* ---- values ---------------------------------------------------------------------------------- */
+
+void *fl_option_field(const FlOption *option, const void *object)
+{
+    return (char *)(uintptr_t)object + option->offset;
+}
+
+static bool read_number(const FlOption *option, const char *text, double *number)
+{
+    const char *word = fl_option_nan(option);
+    *number = NAN;
+    return (word && strcmp(text, word) == 0) ||
+           (fl_text_number(text, number) && *number >= option->min && *number <= option->max &&
+            (is_real(option) || *number == floor(*number)));
+}
+
+static bool read_list(const FlOption *option, const char *text, FlIntList *field)
+{
+    g_auto(GStrv) items = g_strsplit(text, ",", -1);
+    FlIntList list = {.n = (int)g_strv_length(items)};
+    bool good = list.n >= 1 && list.n <= FL_LIST_LONGEST;
+    for (int i = 0; i < list.n && good; i++)
+        good = fl_text_integer(g_strstrip(items[i]), option->min, option->max, &list.value[i]);
+    if (good)
+        *field = list;
+    return good;
+}
+
+/* The number of the first word: 0 in an option of a render is one that is not set. */
+static int first_word(const FlOption *option)
+{
+    return option->scope == FL_SCOPE_RENDER ? 1 : 0;
+}
+
+static bool read_word(const FlOption *option, const char *text, int *field)
+{
+    int index = 0;
+    bool on;
+    if (option->type == FL_OPTION_PASS && fl_text_bool(text, &on))
+        index = on ? FL_PASSTHROUGH_YES : FL_PASSTHROUGH_NO;
+    else if (!fl_text_choice(text, option->value, &index))
+        return false;
+    *field = first_word(option) + index;
+    return true;
+}
+
+bool fl_option_read(const FlOption *option, const char *text, void *field)
+{
+    double number;
+    if (option->type == FL_OPTION_FLAG || option->type == FL_OPTION_BOOL)
+        return fl_text_bool(text, field);
+    if (option->type == FL_OPTION_LIST)
+        return read_list(option, text, field);
+    if (!is_number(option))
+        return read_word(option, text, field);
+    if (!read_number(option, text, &number))
+        return false;
+    if (option->type == FL_OPTION_INT)
+        *(int *)field = (int)number;
+    else if (option->type == FL_OPTION_COUNT)
+        *(uint64_t *)field = (uint64_t)number;
+    else if (option->size == sizeof(float))
+        *(float *)field = (float)number;
+    else
+        *(double *)field = number;
+    return true;
 }
 
 /* ---- options of a render --------------------------------------------------------------------- */
@@ -226,36 +296,6 @@ FlCaller fl_caller_of(const FlRenderOptions *options)
                       .strict = options->strict};
 }
 
-static void *field_of(const FlOption *option, FlRenderOptions *options)
-{
-    g_assert(option->scope == FL_SCOPE_RENDER);
-    return (char *)options + option->offset;
-}
-
-static bool set_number(const FlOption *option, const char *value, void *field)
-{
-    double number = 0;
-    if (!fl_text_number(value, &number) || number < option->min || number > option->max ||
-        (option->type != FL_OPTION_REAL && number != floor(number)))
-        return false;
-    if (option->type == FL_OPTION_REAL)
-        *(double *)field = number > 0 ? number : -1;
-    else if (option->type == FL_OPTION_COUNT)
-        *(uint64_t *)field = (uint64_t)number;
-    else
-        *(int *)field = number > 0 ? (int)number : -1;
-    return true;
-}
-
-static bool set_word(const FlOption *option, const char *value, int *field)
-{
-    int index = 0;
-    if (!fl_text_choice(value, option->value, &index))
-        return false;
-    *field = index + 1;
-    return true;
-}
-
 static void set_text(const char **field, char *value, GPtrArray *strings)
 {
     g_ptr_array_add(strings, value);
@@ -285,24 +325,24 @@ static bool set_ground(const FlOption *option, const char *value, const char *fo
     return true;
 }
 
+/* An explicit 0 overrides the config. */
+static void mark_zero(const FlOption *option, void *field)
+{
+    if (option->type == FL_OPTION_REAL && *(double *)field == 0)
+        *(double *)field = -1;
+    if (option->type == FL_OPTION_INT && *(int *)field == 0)
+        *(int *)field = -1;
+}
+
 bool fl_option_set(const FlOption *option, const char *value, const char *folder,
                    FlRenderOptions *options, GPtrArray *strings, GError **error)
 {
-    void *const field = field_of(option, options);
+    void *const field = fl_option_field(option, options);
     if (!*value) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "the value is missing");
         return false;
     }
     switch (option->type) {
-    case FL_OPTION_FLAG:
-        return fl_text_bool(value, field) || fl_option_reject(option, value, error);
-    case FL_OPTION_INT:
-    case FL_OPTION_COUNT:
-    case FL_OPTION_REAL:
-        return set_number(option, value, field) || fl_option_reject(option, value, error);
-    case FL_OPTION_SWITCH:
-    case FL_OPTION_WORD:
-        return set_word(option, value, field) || fl_option_reject(option, value, error);
     case FL_OPTION_TEXT:
         set_text(field, g_strdup(value), strings);
         return true;
@@ -312,38 +352,22 @@ bool fl_option_set(const FlOption *option, const char *value, const char *folder
     case FL_OPTION_GROUND:
         return set_ground(option, value, folder, field, strings, error);
     default:
-        g_assert_not_reached();
-    }
-}
-
-static size_t field_bytes(const FlOption *option)
-{
-    switch (option->type) {
-    case FL_OPTION_FLAG:
-        return sizeof(bool);
-    case FL_OPTION_INT:
-    case FL_OPTION_SWITCH:
-    case FL_OPTION_WORD:
-        return sizeof(int);
-    case FL_OPTION_COUNT:
-        return sizeof(uint64_t);
-    case FL_OPTION_REAL:
-        return sizeof(double);
-    default:
-        return sizeof(const char *);
+        if (!fl_option_read(option, value, field))
+            return fl_option_reject(option, value, error);
+        mark_zero(option, field);
+        return true;
     }
 }
 
 bool fl_option_is_set(const FlOption *option, const FlRenderOptions *options)
 {
     static const char nothing[sizeof(double) + sizeof(char *)];
-    const char *field = (const char *)options + option->offset;
-    return memcmp(field, nothing, field_bytes(option)) != 0;
+    return memcmp(fl_option_field(option, options), nothing, option->size) != 0;
 }
 
 void fl_option_drop_marker(const FlOption *option, FlRenderOptions *options)
 {
-    void *const field = field_of(option, options);
+    void *const field = fl_option_field(option, options);
     if (option->type == FL_OPTION_REAL)
         *(double *)field = MAX(*(double *)field, 0);
     else if (option->type == FL_OPTION_INT)
@@ -352,7 +376,7 @@ void fl_option_drop_marker(const FlOption *option, FlRenderOptions *options)
 
 void fl_option_copy(const FlOption *option, const FlRenderOptions *from, FlRenderOptions *to)
 {
-    memcpy(field_of(option, to), (const char *)from + option->offset, field_bytes(option));
+    memcpy(fl_option_field(option, to), fl_option_field(option, from), option->size);
 }
 
 /* ---- options of a render or a region --------------------------------------------------------- */
@@ -365,6 +389,13 @@ static char *number_text(double number)
     if (g_ascii_strtod(text, NULL) != number)
         g_ascii_dtostr(text, sizeof text, number);
     return g_strdup(text);
+}
+
+/* Nine digits give a float back. */
+static char *float_text(float number)
+{
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    return g_strdup(g_ascii_formatd(text, sizeof text, "%.9g", (double)number));
 }
 
 static char *tint_text(const FlOption *option, const FlRegionSettings *t)
@@ -384,10 +415,18 @@ const FlKeys *fl_option_keys(const FlOption *option, const FlRegionSettings *set
     return NULL;
 }
 
+static char *list_text(const FlIntList *list)
+{
+    GString *text = g_string_new(NULL);
+    for (int i = 0; i < list->n; i++)
+        g_string_append_printf(text, "%s%d", i ? "," : "", list->value[i]);
+    return g_string_free(text, FALSE);
+}
+
 char *fl_option_get(const FlOption *option, const void *object)
 {
     const FlKeys *keys = option->scope == FL_SCOPE_REGION ? fl_option_keys(option, object) : NULL;
-    const void *const field = (const char *)object + option->offset;
+    const void *const field = fl_option_field(option, object);
     if (keys)
         return g_strdup(keys->text);
     switch (option->type) {
@@ -404,13 +443,17 @@ char *fl_option_get(const FlOption *option, const void *object)
     case FL_OPTION_FIXED:
         return isnan(*(const double *)field) ? g_strdup(fl_option_nan(option))
                                              : number_text(*(const double *)field);
+    case FL_OPTION_FLOAT:
+    case FL_OPTION_WEIGHT:
+        return float_text(*(const float *)field);
+    case FL_OPTION_LIST:
+        return list_text(field);
     case FL_OPTION_WORD:
     case FL_OPTION_SWITCH:
-        return fl_text_word(option->value, *(const int *)field - 1);
     case FL_OPTION_CHOICE:
     case FL_OPTION_DETAIL:
     case FL_OPTION_PASS:
-        return fl_text_word(option->value, *(const int *)field);
+        return fl_text_word(option->value, *(const int *)field - first_word(option));
     case FL_OPTION_TEXT:
     case FL_OPTION_PATH:
     case FL_OPTION_GROUND:
@@ -420,8 +463,6 @@ char *fl_option_get(const FlOption *option, const void *object)
         return g_strdup(*(const char *const *)field);
     case FL_OPTION_TINT:
         return tint_text(option, object);
-    case FL_OPTION_PARAM:
-        return fl_params_get(&((const FlRegionSettings *)object)->params, option->name);
     case FL_OPTION_PRESET:
     case FL_OPTION_COMMAND:
     case FL_OPTION_READ:

@@ -14,7 +14,7 @@ typedef enum FlOptionScope {
     FL_SCOPE_PROGRAM, // the command line alone
 } FlOptionScope;
 
-/** See options.def. FL_OPTION_PARAM is a line of params.def. */
+/** See options.def, and params.def. */
 typedef enum FlOptionType {
     FL_OPTION_FLAG,
     FL_OPTION_SWITCH,
@@ -36,7 +36,9 @@ typedef enum FlOptionType {
     FL_OPTION_NAME,
     FL_OPTION_MAP,
     FL_OPTION_PRESET,
-    FL_OPTION_PARAM,
+    FL_OPTION_FLOAT,
+    FL_OPTION_WEIGHT,
+    FL_OPTION_LIST,
     FL_OPTION_COMMAND,
     FL_OPTION_READ,
 } FlOptionType;
@@ -73,6 +75,7 @@ typedef struct FlOption {
     FlOptionScope scope;
     FlOptionType type;
     size_t offset;     // of its field in the struct of its scope
+    size_t size;       // of that field, bytes
     const char *value; // words with | between, or placeholders in capitals; "": no value
     const char *unit;
     double min, max; // inclusive, of numbers
@@ -81,6 +84,7 @@ typedef struct FlOption {
     FlOptionBytes bytes;
     FlOptionGroup group;
     const char *help;
+    const char *const *preset; // of a parameter: its values by FlPreset, else NULL
 } FlOption;
 
 int fl_option_count(void);
@@ -112,6 +116,13 @@ char *fl_option_help(const FlOption *option);
 
 /** Sets FL_ERROR_USAGE: the value and what the option expects. Returns: false. */
 bool fl_option_reject(const FlOption *option, const char *value, GError **error);
+
+/** Reads a flag, a number, a list or a word into its field. Returns: false if the text is none;
+ * the field is then unchanged. */
+bool fl_option_read(const FlOption *option, const char *text, void *field);
+
+/** The field of an option in the struct of its scope. */
+void *fl_option_field(const FlOption *option, const void *object);
 
 /* ---- options of a render --------------------------------------------------------------------- */
 

@@ -2,7 +2,8 @@
 #ifndef FLUIDY_PARAMS_PARAMS_H
 #define FLUIDY_PARAMS_PARAMS_H
 
-#include <fluidy/params.h>
+#include <fluidy/error.h>
+#include <stdbool.h>
 
 #define FL_LIST_LONGEST 8
 
@@ -14,18 +15,28 @@ typedef struct FlIntList {
 
 #define FL_C_TYPE_INT int
 #define FL_C_TYPE_FLOAT float
-#define FL_C_TYPE_DIAL float
+#define FL_C_TYPE_WEIGHT float
 #define FL_C_TYPE_BOOL bool
 #define FL_C_TYPE_LIST FlIntList
 
 /** Fields, units and ranges are those of params.def. */
-struct FlParams {
+typedef struct FlParams {
 #define FL_PARAM(type, field, ...) FL_C_TYPE_##type field;
 #include "params/params.def"
 #undef FL_PARAM
-};
+} FlParams;
+
+/** Returns: the defaults, to be freed with fl_params_free(). */
+FlParams *fl_params_new(void);
+void fl_params_free(FlParams *params); // NULL is fine
 
 void fl_params_defaults(FlParams *params);
+
+/** Sets all parameters to a preset by its name. FL_ERROR_USAGE. */
+bool fl_params_preset(FlParams *params, const char *word, GError **error);
+
+/** Sets a parameter of that name. FL_ERROR_USAGE without the name; params is then unchanged. */
+bool fl_params_set(FlParams *params, const char *name, const char *value, GError **error);
 
 /** The trade of quality for time. */
 typedef enum FlDetail {
@@ -50,13 +61,12 @@ static inline int fl_list_at(const FlIntList *list, int from_coarsest)
     return list->value[from_coarsest < list->n ? from_coarsest : list->n - 1];
 }
 
-/** The offset of a parameter's field in FlParams. */
-size_t fl_param_offset(int index);
-
 /** The names of the presets, NULL-terminated; static storage. */
 extern const char *const fl_preset_names[];
 
 /** Returns: the name of the preset of an older word; any other word itself. */
 const char *fl_preset_word(const char *word);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlParams, fl_params_free)
 
 #endif

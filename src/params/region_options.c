@@ -12,6 +12,11 @@
 /* A second key of regions for the option style-scale. */
 #define SCALE "scale"
 
+static const FlOption *option_of(const char *key)
+{
+    return fl_option_find(FL_SCOPE_REGION, strcmp(key, SCALE) == 0 ? "style-scale" : key);
+}
+
 const char *const *fl_region_settings_keys(void)
 {
     static const char **keys;
@@ -37,28 +42,21 @@ static void drop_keys(FlRegionSettings *settings, const FlOption *option)
     }
 }
 
-/* The field of an option's number: a float in params, else a double. */
-static void *number_of(FlRegionSettings *settings, const FlOption *option)
+static double amount_of(const FlRegionSettings *settings, const FlOption *option)
 {
-    if (option->type != FL_OPTION_PARAM)
-        return (char *)settings + option->offset;
-    return (char *)&settings->params + fl_param_offset(fl_param_find(option->name));
-}
-
-static double amount_of(FlRegionSettings *settings, const FlOption *option)
-{
-    const void *const field = number_of(settings, option);
-    return option->type == FL_OPTION_PARAM ? (double)*(const float *)field : *(const double *)field;
+    const void *const field = fl_option_field(option, settings);
+    return option->type == FL_OPTION_WEIGHT ? (double)*(const float *)field
+                                            : *(const double *)field;
 }
 
 void fl_region_settings_move(FlRegionSettings *settings, int frame)
 {
     for (guint i = 0; settings->keyed && i < settings->keyed->len; i++) {
         const FlKeys *keys = g_ptr_array_index(settings->keyed, i);
-        void *const field = number_of(settings, keys->option);
+        void *const field = fl_option_field(keys->option, settings);
         if (keys->option->type == FL_OPTION_DIAL)
             *(double *)field = fl_keys_amount(keys, frame);
-        else if (keys->option->type == FL_OPTION_PARAM)
+        else if (keys->option->type == FL_OPTION_WEIGHT)
             *(float *)field = (float)fl_keys_amount(keys, frame);
     }
 }
@@ -99,59 +97,13 @@ static bool set_tint(FlRegionSettings *settings, const char *value)
     return true;
 }
 
-static bool set_passthrough(FlPassthrough *passthrough, const char *value)
-{
-    bool on = false;
-    if (fl_text_bool(value, &on))
-        *passthrough = on ? FL_PASSTHROUGH_YES : FL_PASSTHROUGH_NO;
-    else if (g_ascii_strcasecmp(value, "auto") == 0)
-        *passthrough = FL_PASSTHROUGH_AUTO;
-    else
-        return false;
-    return true;
-}
-
-static bool set_detail(FlRegionSettings *settings, const char *form, const char *value)
-{
-    int detail = 0;
-    if (!fl_text_choice(value, form, &detail))
-        return false;
-    settings->detail = detail;
-    fl_params_detail(&settings->params, settings->detail);
-    return true;
-}
-
-static bool set_dial(const FlOption *option, const char *value, double *field)
-{
-    double number = NAN;
-    const char *word = fl_option_nan(option);
-    if (!(word && strcmp(value, word) == 0) &&
-        (!fl_text_number(value, &number) || number < option->min || number > option->max))
-        return false;
-    *field = number;
-    return true;
-}
-
 static bool store(FlRegionSettings *settings, const FlOption *option, const char *value,
                   const char *folder)
 {
-    void *const field = (char *)settings + option->offset;
+    void *const field = fl_option_field(option, settings);
     switch (option->type) {
-    case FL_OPTION_CHOICE:
-        return fl_text_choice(value, option->value, field);
-    case FL_OPTION_DETAIL:
-        return set_detail(settings, option->value, value);
-    case FL_OPTION_BOOL:
-        return fl_text_bool(value, field);
-    case FL_OPTION_INT:
-        return fl_text_integer(value, option->min, option->max, field);
-    case FL_OPTION_DIAL:
-    case FL_OPTION_FIXED:
-        return set_dial(option, value, field);
     case FL_OPTION_TINT:
         return set_tint(settings, value);
-    case FL_OPTION_PASS:
-        return set_passthrough(field, value);
     case FL_OPTION_STYLE:
         replace_string(field, style_path(value, folder));
         return true;
@@ -162,7 +114,11 @@ static bool store(FlRegionSettings *settings, const FlOption *option, const char
         replace_string(field, map_path(value, folder));
         return true;
     default:
-        g_assert_not_reached();
+        if (!fl_option_read(option, value, field))
+            return false;
+        if (option->type == FL_OPTION_DETAIL)
+            fl_params_detail(&settings->params, settings->detail);
+        return true;
     }
 }
 
@@ -212,10 +168,7 @@ static bool set_engine(FlRegionSettings *settings, const FlOption *option, const
 static bool set_plain(FlRegionSettings *settings, const char *key, const char *value,
                       const char *folder, GError **error)
 {
-    const bool scale = strcmp(key, SCALE) == 0;
-    const FlOption *option = fl_option_find(FL_SCOPE_REGION, key);
-    if (scale || (option && option->type == FL_OPTION_PARAM))
-        return fl_params_set(&settings->params, scale ? "style-scale" : key, value, error);
+    const FlOption *option = option_of(key);
     if (option && option->type == FL_OPTION_PRESET)
         return set_preset(settings, value, error);
     if (option) {
@@ -223,7 +176,7 @@ static bool set_plain(FlRegionSettings *settings, const char *key, const char *v
         if (engine ? set_engine(settings, option, value) : store(settings, option, value, folder))
             return true;
         fl_option_reject(option, value, error);
-        g_prefix_error(error, "%s: ", key);
+        g_prefix_error(error, "%s: ", option->name);
         return false;
     }
     g_autofree char *hint = fl_did_you_mean(key, fl_region_settings_keys());
@@ -278,8 +231,7 @@ static bool set_keyed(FlRegionSettings *settings, const FlOption *option, const 
 bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const char *value,
                             const char *folder, GError **error)
 {
-    const FlOption *option =
-        fl_option_find(FL_SCOPE_REGION, strcmp(key, SCALE) == 0 ? "style-scale" : key);
+    const FlOption *option = option_of(key);
     if (option)
         drop_keys(settings, option);
     return option && is_keyed(option, value, folder)
@@ -290,11 +242,9 @@ bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const c
 void fl_region_settings_init(FlRegionSettings *settings)
 {
     *settings = (FlRegionSettings){0};
-    fl_params_defaults(&settings->params);
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *option = fl_option_at(i);
-        if (option->scope == FL_SCOPE_REGION && option->type != FL_OPTION_PARAM &&
-            option->type != FL_OPTION_PRESET &&
+        if (option->scope == FL_SCOPE_REGION && option->type != FL_OPTION_PRESET &&
             !store(settings, option, option->default_value, NULL))
             g_error("options.def: %s: the default is not one of its values", option->name);
     }
