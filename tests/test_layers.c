@@ -291,7 +291,7 @@ static void layers_packed_in_turn_are_the_same_picture(void)
         fl_layers_compose(layers, 7, &below, W, H, false, expected);
         layers_clear(layers, 7);
         g_auto(FlLayersAbove) above = {0};
-        g_assert_true(fl_layers_above_init(&above, W, H, params.gap_px, &error));
+        g_assert_true(fl_layers_above_init(&above, W, H, &params, &error));
         random_stack(layers, coverage, 7, (uint64_t)trial);
         for (int k = 6; k >= 0; k--) {
             fl_layer_occlude(&layers[k], &above);

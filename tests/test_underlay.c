@@ -39,7 +39,7 @@ static void fade(FlLayer *layers)
     g_auto(FlUnderlay) above = {0};
     g_auto(FlLayersAbove) taken = {0};
     g_assert_true(fl_underlay_init(&above, W, H, &error) &&
-                  fl_layers_above_init(&taken, W, H, 0, &error));
+                  fl_layers_above_init(&taken, W, H, &(FlStackParams){0}, &error));
     for (int k = 1; k >= 0; k--) {
         g_assert_true(fl_underlay_next(&above, &layers[k], true, &error) &&
                       fl_fade_find(&layers[k], &error));

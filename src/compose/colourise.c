@@ -28,7 +28,8 @@ static int body_of(int amount)
 /** The alpha that paint has at least, whatever its colour. */
 static int opacity_of(FlMedium medium, int amount)
 {
-    if (medium == FL_MEDIUM_OPAQUE) // 1 - 2^-4a: FL_AMOUNT_ONE * 256 is four octaves
+    if (medium == FL_MEDIUM_AUTO ||
+        medium == FL_MEDIUM_OPAQUE) // 1 - 2^-4a: FL_AMOUNT_ONE * 256 is four octaves
         return 255 - fl_density_level(256 * amount) / 256;
     if (medium == FL_MEDIUM_SOLID)
         return 255;

@@ -162,13 +162,18 @@ static int first_of_batch(const Stack *stack, int end)
     return first;
 }
 
+static FlStackParams stack_params(const FlComposeInput *input)
+{
+    const uint8_t *paper = input->background->paper;
+    return (FlStackParams){{paper[0], paper[1], paper[2]}, input->linear, input->gap_px};
+}
+
 static bool resolve_all(Stack *stack, GError **error)
 {
     const FlComposeInput *input = stack->sources.input;
     FlLayer *layers = stack->composite->layers;
     const int n = stack->composite->n_layers;
-    FlStackParams params = {.linear = input->linear, .gap_px = input->gap_px};
-    memcpy(params.paper, input->background->paper, 3);
+    const FlStackParams params = stack_params(input);
     g_auto(FlUnderlay) underlay = {0};
     bool made = init_underlay(&underlay, stack, error);
     for (int end = n, first; made && end > 0; end = first) {
@@ -186,8 +191,9 @@ static bool resolve_in_turn(Stack *whole, GError **error)
     g_auto(FlUnderlay) underlay = {0};
     g_auto(FlLayersAbove) above = {0};
     Stack stack = *whole;
+    const FlStackParams params = stack_params(input);
     if (!init_underlay(&underlay, whole, error) ||
-        !fl_layers_above_init(&above, input->width, input->height, input->gap_px, error))
+        !fl_layers_above_init(&above, input->width, input->height, &params, error))
         return false;
     for (int end = stack.composite->n_layers, first; end > 0; end = first) {
         first = first_of_batch(&stack, end);

@@ -7,14 +7,16 @@
 
 #include <string.h>
 
-bool fl_layers_above_init(FlLayersAbove *above, int width, int height, float gap_px, GError **error)
+bool fl_layers_above_init(FlLayersAbove *above, int width, int height, const FlStackParams *params,
+                          GError **error)
 {
     const size_t n = (size_t)width * height;
-    *above = (FlLayersAbove){.width = width, .height = height, .gap_px = gap_px};
+    *above = (FlLayersAbove){.width = width, .height = height, .params = *params};
+    fl_transfer_init(&above->scale, params->linear);
     return (above->area = fl_alloc(n, 1, "a matte", error)) &&
            (above->paint = fl_alloc(n, 2, "a matte", error)) &&
            (above->seen = fl_alloc(n, 1, "a matte", error)) &&
-           (gap_px <= 0 || (above->spread = fl_alloc(n, 1, "a matte", error)));
+           (params->gap_px <= 0 || (above->spread = fl_alloc(n, 1, "a matte", error)));
 }
 
 void fl_layers_above_clear(FlLayersAbove *above)
@@ -83,11 +85,44 @@ static void fade_columns(const FlLayer *layer, const FlLayersAbove *above, int y
     }
 }
 
+/** Lowers the opacity of a pixel to a limit; over the paper it keeps its look. */
+static void lower_opacity(const FlLayersAbove *above, int limit, uint8_t rgba[4])
+{
+    uint8_t colour[3];
+    for (int c = 0; c < 3; c++) {
+        const int32_t paper = above->scale.value[above->params.paper[c]];
+        const int32_t excess = above->scale.value[rgba[c]] - paper;
+        colour[c] = fl_transfer_level(&above->scale, paper + excess * rgba[3] / 255);
+    }
+    fl_unblend(&above->scale, colour, above->params.paper, limit, rgba);
+}
+
+/**
+ * Columns of row y of a layer that yields: it hides no more of the layers below than it knocks out,
+ * and no more of it has to be stored below the paint above than an alpha of 255.
+ */
+static void yield_columns(const FlLayer *layer, const FlLayersAbove *above, int y,
+                          FlColumns columns)
+{
+    const FlRect box = layer->area.box;
+    const uint16_t *paint = above->paint + (size_t)(box.y + y) * (size_t)above->width + box.x;
+    const size_t row = (size_t)y * (size_t)box.width;
+    for (int x = columns.first; x < columns.last; x++) {
+        const size_t p = row + (size_t)x;
+        const int left = (65535 - paint[x]) / 257, seen = scaled(above->seen[p], layer->alpha);
+        const int limit = MIN(layer->knockout[p], 255 * left / MAX(seen, 1));
+        if (layer->rgba[4 * p + 3] > limit && left > 0)
+            lower_opacity(above, limit, layer->rgba + 4 * p);
+    }
+}
+
 static void resolve_columns(const FlLayer *layer, const FlLayersAbove *above, int y,
                             FlColumns columns)
 {
     if (layer->fade.keep)
         fade_columns(layer, above, y, columns);
+    if (layer->yields)
+        yield_columns(layer, above, y, columns);
     const FlRect box = layer->area.box;
     const size_t i = (size_t)(box.y + y) * (size_t)above->width + (size_t)(box.x + columns.first);
     const size_t j = (size_t)y * (size_t)box.width + (size_t)columns.first;
@@ -104,7 +139,7 @@ static void grow_area(const FlLayer *layer, FlLayersAbove *above)
 {
     const size_t n = (size_t)above->width * above->height;
     const FlVisibleShape shape = {&layer->area, layer->coverage};
-    fl_visibility_spread(&shape, above->width, above->height, above->gap_px, above->spread);
+    fl_visibility_spread(&shape, above->width, above->height, above->params.gap_px, above->spread);
     for (size_t i = 0; i < n; i++)
         above->area[i] = (uint8_t)MAX(above->area[i], scaled(above->spread[i], layer->alpha));
 }
@@ -289,7 +324,7 @@ bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlSt
                        GError **error)
 {
     g_auto(FlLayersAbove) above = {0};
-    if (!fl_layers_above_init(&above, width, height, params->gap_px, error))
+    if (!fl_layers_above_init(&above, width, height, params, error))
         return false;
     g_autofree uint32_t *sums = fl_alloc(4 * (size_t)width, sizeof *sums, "a row", error);
     g_autofree uint8_t *drawn = sums ? fl_alloc((size_t)width, 1, "a row of pixels", error) : NULL;
@@ -301,10 +336,9 @@ bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlSt
     for (int k = 0; k < n; k++)
         plain &=
             layers[k].stacking != FL_STACKING_GLAZE && layers[k].blend_mode == FL_BLEND_MODE_OVER;
-    FlTransfer scale;
-    fl_transfer_init(&scale, params->linear);
     for (int y = 0; !plain && y < height; y++)
-        resolve_colours(layers, n, width, y, params, &scale, (Row){sums_in(sums, width), drawn});
+        resolve_colours(layers, n, width, y, params, &above.scale,
+                        (Row){sums_in(sums, width), drawn});
     return true;
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/blend_mode.h"
 #include "base/pixel_runs.h"
+#include "compose/layer_blend.h"
 #include "params/region_settings.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -32,6 +33,8 @@ typedef struct FlLayer {
     FlPixelRuns runs;        // of a packed one, owned by the caller as well
     FlFade fade;             // owned by the caller
     bool sheer;              // drawn by hand: what lies below is seen through its grain
+    bool yields;             // opaque over the background; layers below it are seen as through
+                             // transparent paint
     uint8_t alpha;           // opacity of the layer, 255 opaque
     FlStacking stacking;     // a layer with a blend mode hides no pixels, whatever this says
     FlBlendMode blend_mode;  // with the layers below
@@ -66,14 +69,15 @@ bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlSt
 /** The share of each pixel of a frame that the layers above take. */
 typedef struct FlLayersAbove {
     int width, height;
-    float gap_px;    // of FlStackParams
+    FlStackParams params;
+    FlTransfer scale;
     uint8_t *area;   // the shapes that knock out, 0..255
     uint16_t *paint; // the sum of their paint's alpha, 0..65535
     uint8_t *spread; // a grown shape, if shapes are grown; else NULL
     uint8_t *seen;   // the visible coverage of the layer at hand
 } FlLayersAbove;
 
-bool fl_layers_above_init(FlLayersAbove *above, int width, int height, float gap_px,
+bool fl_layers_above_init(FlLayersAbove *above, int width, int height, const FlStackParams *params,
                           GError **error);
 void fl_layers_above_clear(FlLayersAbove *above);
 

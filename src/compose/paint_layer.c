@@ -14,21 +14,10 @@
 #include <string.h>
 
 /* The medium that the region or its style asks for; FL_MEDIUM_AUTO: neither does. */
-static FlMedium asked_medium(const FlPaintedRegion *painted)
+static FlMedium medium_of(const FlPaintedRegion *painted)
 {
     const FlMedium said = painted->settings->medium;
     return said != FL_MEDIUM_AUTO ? said : painted->style->medium;
-}
-
-/* The default: opaque where the output is not the style's paper. */
-static FlMedium medium_of(const FlComposeInput *input, const FlPaintedRegion *painted)
-{
-    const FlMedium asked = asked_medium(painted);
-    const FlBackground *background = input->background;
-    if (asked != FL_MEDIUM_AUTO)
-        return asked;
-    return background->none || background->pattern || input->layers_apart ? FL_MEDIUM_OPAQUE
-                                                                          : FL_MEDIUM_TRANSPARENT;
 }
 
 /* Its paint has alpha of its own. */
@@ -87,7 +76,7 @@ static FlColouring colouring_of(const FlLayerSources *sources, const FlPaintedRe
     const FlRegionSettings *t = painted->settings;
     FlColouring colouring = {.tint = t->tint,
                              .picture = t->has_colour ? NULL : draw->picture,
-                             .medium = medium_of(input, painted),
+                             .medium = medium_of(painted),
                              .linear = input->linear};
     memcpy(colouring.fill, t->has_colour ? t->colour : draw->rgb, 3);
     memcpy(colouring.paper, input->background->paper, 3);
@@ -254,7 +243,7 @@ static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
     const FlDrawing *drawing = sources->input->drawing;
     const int border_px = (int)(painted->style->border_px + 0.5f);
     if (!fl_knockout(amounts, draw->coverage, layer->coverage, box, fl_drawing_width(drawing),
-                     fl_drawing_height(drawing), MAX(border_px, 1), asked_medium(painted),
+                     fl_drawing_height(drawing), MAX(border_px, 1), medium_of(painted),
                      darkness_of(&colouring), knockout, error))
         return false;
     const FlGaps gaps = {.strength = (float)painted->settings->gaps,
@@ -323,12 +312,14 @@ void fl_layer_begin(FlLayer *layer, const FlLayerSources *sources, int r)
     const FlPaintedRegion *painted = p >= 0 ? sources->input->painted[p] : NULL;
     const FlRect box = draw->area.box;
     const bool by_hand = !painted && draw->by_hand;
-    *layer = (FlLayer){.area = {box, g_memdup2(draw->area.row, box.height * sizeof(FlColumns))},
-                       .coverage = by_hand ? draw->by_hand : draw->coverage,
-                       .sheer = by_hand,
-                       .alpha = draw->alpha,
-                       .stacking = painted ? fl_stacking_of(painted) : FL_STACKING_KNOCKOUT,
-                       .blend_mode = draw->blend_mode};
+    *layer =
+        (FlLayer){.area = {box, g_memdup2(draw->area.row, box.height * sizeof(FlColumns))},
+                  .coverage = by_hand ? draw->by_hand : draw->coverage,
+                  .sheer = by_hand,
+                  .yields = painted && medium_of(painted) == FL_MEDIUM_AUTO && !is_cut_out(painted),
+                  .alpha = draw->alpha,
+                  .stacking = painted ? fl_stacking_of(painted) : FL_STACKING_KNOCKOUT,
+                  .blend_mode = draw->blend_mode};
 }
 
 /* The first style of a region that is seen in the frame; below 0 as in painted_of. */

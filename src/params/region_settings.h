@@ -7,7 +7,7 @@
 
 /** The rule by which paint composites over the layers below. */
 typedef enum FlMedium {
-    FL_MEDIUM_AUTO,        // not set: what suits the background
+    FL_MEDIUM_AUTO,        // opaque over the background, transparent over other paint
     FL_MEDIUM_TRANSPARENT, // density over the background, as watercolour
     FL_MEDIUM_OPAQUE,      // hides it the more the thicker it is, as gouache
     FL_MEDIUM_BODY,  // hides the layers below wherever there is paint, as if cut out of its paper
@@ -126,7 +126,7 @@ typedef struct FlRegionSettings {
     uint8_t colour[3]; // sRGB
     FlDetail detail;
     FlStacking stacking;
-    FlMedium medium;    // FL_MEDIUM_AUTO: the style's, or what the output wants
+    FlMedium medium;    // FL_MEDIUM_AUTO: the style's, if that has one
     double granulation; // as of fl_granulate(); NAN: the style's
     double wash;        // of FlWashStyle, as those below; NAN: the style's
     double light;       // the side on which the shadow lies, degrees; 90: below

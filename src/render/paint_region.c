@@ -193,8 +193,6 @@ static FlColouring colouring_of(const GivenRegion *given)
     const bool chosen = settings->medium != FL_MEDIUM_AUTO;
     FlColouring colouring = {.tint = settings->has_colour ? FL_TINT_FILL : FL_TINT_KEEP,
                              .medium = chosen ? settings->medium : style->medium};
-    if (colouring.medium == FL_MEDIUM_AUTO)
-        colouring.medium = FL_MEDIUM_OPAQUE; // it is laid over anything
     if (given->alpha)
         colouring.medium = FL_MEDIUM_SOLID;
     memcpy(colouring.fill, settings->colour, 3);
