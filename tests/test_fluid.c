@@ -285,6 +285,23 @@ static void test_any(void)
         }
 }
 
+/* A ball that rises; in frame 12 a puff hangs below it. */
+static double puffing(double x, double y, int frame)
+{
+    const double ball = 22 - hypot(x - 100, y - 110 + 2 * frame);
+    return frame < 12 ? ball : MAX(ball, 16 - hypot(x - 100, y - 118));
+}
+
+static void test_puff(void)
+{
+    g_autoptr(FlFluid) fluid = fluid_of("plain");
+    for (int frame = 1; frame <= 12; frame++)
+        flow(fluid, puffing, frame - 1, frame);
+    // the ball's fluid goes on, and is not sucked into the puff
+    g_assert_cmpfloat(fabsf(motion[2 * (80 * SIDE + 100) + 1] + 2), <, .5f);
+    g_assert_cmpfloat(fabsf(motion[2 * (96 * SIDE + 100) + 1]), <, 2);
+}
+
 static void test_leap(void)
 {
     g_autoptr(FlFluid) far = fluid_of("plain"), near = fluid_of("plain");
@@ -323,6 +340,7 @@ int main(int argc, char **argv)
     g_test_add_func("/fluid/rest", test_rest);
     g_test_add_func("/fluid/stop", test_stop);
     g_test_add_func("/fluid/any", test_any);
+    g_test_add_func("/fluid/puff", test_puff);
     g_test_add_func("/fluid/leap", test_leap);
     g_test_add_func("/fluid/anew", test_anew);
     return g_test_run();

@@ -11,6 +11,7 @@
 #define FIT_STEPS 15
 #define LEAST_CONTOUR 6 // cells of contour of a part that flows
 #define LEAP .05f       // of the page's larger side
+#define BORN 2.5f       // cells outside of where the fluid was to come
 #define NONE (-1)
 
 /* Cells lie on the page, so that they are the same for other parts of it. With a margin and a
@@ -263,6 +264,40 @@ static void fit_parts(FlFluid *f)
 /* ---- contour ------------------------------------------------------------------------------------
  */
 
+/** The distance of a cell in the frame before, where its part's motion says that it was. */
+static float distance_before(const FlFluid *f, int c)
+{
+    float motion[2];
+    fl_fluid_rigid(fl_fluid_part(f, c), f->column[c], f->line[c], motion);
+    return fl_fluid_sample(f, f->before, f->column[c] - motion[0], f->line[c] - motion[1]);
+}
+
+/** Marks a cell that was outside by `depth` both by its part's motion and by the flow. */
+static void mark_born(FlFluid *f, int c, float depth, int *last)
+{
+    const float x = f->column[c], y = f->line[c];
+    if (f->label[c] == NONE || f->ring[c] || distance_before(f, c) > -depth)
+        return;
+    const float u = fl_fluid_sample(f, f->u, x + .5f, y), v = fl_fluid_sample(f, f->v, x, y + .5f);
+    if (fl_fluid_sample(f, f->before, x - u, y - v) <= -depth)
+        f->ring[c] = true, f->queue[(*last)++] = c;
+}
+
+/** Marks in f->ring the cells of each puff that joins a part: fluid that comes in has not flowed
+ * there, and its contour must not push. A liquid, which lets in no fluid, has splashed there. */
+static void find_born(FlFluid *f)
+{
+    int last = 0;
+    memset(f->ring, 0, (size_t)f->n);
+    for (int c = 0; c < f->n && f->dials.emit > 0; c++)
+        mark_born(f, c, BORN, &last);
+    for (int k = 0; k < last; k++) {
+        const int c = f->queue[k], beside[] = {c - 1, c + 1, c - f->stride, c + f->stride};
+        for (int d = 0; d < 4; d++)
+            mark_born(f, beside[d], .5f, &last);
+    }
+}
+
 /** The normal and the velocity of the contour, in the cells beside it. */
 static void find_contour(FlFluid *f)
 {
@@ -279,8 +314,7 @@ static void find_contour(FlFluid *f)
         const float x = f->column[c], y = f->line[c];
         float motion[2];
         fl_fluid_rigid(part, x, y, motion);
-        const float grown =
-            f->distance[c] - fl_fluid_sample(f, f->before, x - motion[0], y - motion[1]);
+        const float grown = f->ring[c] ? 0 : f->distance[c] - distance_before(f, c);
         f->nx[c] = -dx / slope, f->ny[c] = -dy / slope;
         f->length[c] = sqrtf(ax * ax + ay * ay);
         if (part->known)
@@ -294,5 +328,6 @@ void fl_fluid_read_shape(FlFluid *f)
     find_openings(f);
     find_parts(f);
     fit_parts(f);
+    find_born(f);
     find_contour(f);
 }

@@ -13,13 +13,13 @@
 #include <math.h>
 #include <string.h>
 
-#define RINGS 12         // cells by which a velocity is continued outwards
-#define RESTS .12f       // slower than this a contour rests
-#define BAND 5           // below the contour, in which buoyancy sets in
-#define CONFINEMENT .05f // of a swirl of 1
-#define FASTEST_IN 2.    // at which fluid comes in
-#define SLOWS .8f        // factor on the velocity of what rests
-#define STILL .01f       // a velocity that is none
+#define RINGS 12        // cells by which a velocity is continued outwards
+#define RESTS .12f      // slower than this a contour rests
+#define BAND 5          // below the contour, in which buoyancy sets in
+#define CONFINEMENT .1f // of a swirl of 1
+#define FASTEST_IN 2.   // at which fluid comes in
+#define SLOWS .8f       // factor on the velocity of what rests
+#define STILL .01f      // a velocity that is none
 
 /** The velocities across the left faces, or the upper ones. */
 typedef struct Faces {
@@ -48,7 +48,7 @@ FlFluidDials fl_fluid_dials(const FlRegionSettings *settings)
         [FL_FLUID_NONE] = {.memory = 0},
         [FL_FLUID_PLAIN] = {.memory = 1, .emit = 1, .swirl = 1},
         [FL_FLUID_SMOKE] = {.memory = 1, .emit = 1, .swirl = 1, .buoyancy = 2},
-        [FL_FLUID_WATER] = {.memory = .95f, .swirl = 1},
+        [FL_FLUID_WATER] = {.memory = .95f, .swirl = .5f},
         [FL_FLUID_FIRE] =
             {.memory = .9f, .emit = .3f, .swirl = 1, .buoyancy = 2, .burn = 1, .rise = 1},
         [FL_FLUID_HONEY] = {.memory = .8f, .stiff = .2f},
