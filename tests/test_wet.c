@@ -271,12 +271,12 @@ static void test_vanish(void)
     scene_free(scene);
 }
 
-/* A front is left where its disk slides on, and is taken away where the disk is suddenly far or the
- * paper keeps none of its paint. */
+/* A front is left where its disk slides on, below the disk also where that goes back, and is taken
+ * away where the disk is suddenly far or the paper keeps none of its paint. */
 static void test_jump(void)
 {
-    for (int k = 0; k < 3; k++) {
-        const bool jumps = k == 1, leaves_none = k == 2;
+    for (int k = 0; k < 4; k++) {
+        const bool jumps = k == 1, leaves_none = k == 2, slides = k == 3;
         Scene *scene = scene_new();
         mark(scene, 60, 66, 0);
         g_autoptr(GArray) fronts = g_array_ref(scene->fronts), lost = NULL;
@@ -284,14 +284,22 @@ static void test_jump(void)
         lost = g_array_new(FALSE, FALSE, sizeof(FlStainMark));
         draw_disk(jumps ? 160 : 72, jumps ? 10 : RADIUS, scene->now);
         memset(scene->motion, 0, sizeof scene->motion);
+        scene->shape.distance_before = scene->distance;
         g_assert_true(fl_moving_edge_look(&edge, &scene->shape, NULL));
         for (int i = 0; i < edge.n; i++)
-            edge.point[i].receding = 20, edge.point[i].kept = leaves_none ? 0 : 1;
+            edge.point[i].receding = slides ? 0 : 20, edge.point[i].kept = leaves_none ? 0 : 1;
         fl_marks_lose_fronts(&scene->shape, &edge, fronts, lost);
         if (jumps || leaves_none)
             g_assert_cmpuint(lost->len, >, fronts->len / 2);
-        else
+        else if (slides)
             g_assert_cmpuint(lost->len, ==, 0);
+        guint ahead = 0;
+        for (guint i = 0; i < fronts->len; i++)
+            ahead += scene->distance[g_array_index(fronts, FlFrontMark, i).at] < -2;
+        for (guint i = 0; k == 0 && i < lost->len; i++)
+            g_assert_cmpfloat(scene->distance[g_array_index(lost, FlStainMark, i).at], <, 2);
+        if (k == 0)
+            g_assert_cmpuint(lost->len, >=, MAX(ahead, 100));
         scene_free(scene);
     }
 }
@@ -308,9 +316,10 @@ static void test_other_paint(void)
 
 /* The most ink of the fronts of a disk of region 3 where paint of a region was seen: of any colour
  * but the disk's own. */
-static float most_ink(int16_t region)
+static float most_ink(int16_t region, float pace)
 {
     Scene *scene = scene_new();
+    scene->pace = pace;
     float most = 0;
     for (int p = 0; p < PIXELS; p++)
         scene->region[p] = region;
@@ -326,14 +335,16 @@ static float most_ink(int16_t region)
     return most;
 }
 
-/* Paint that is seen runs ahead: that of a shape above, and none of a shape that has faded. */
+/* Paint that is seen runs ahead: that of a shape above where the shape's own was never seen, and
+ * none of a shape that has faded. */
 static void test_seen_paint(void)
 {
-    const float own = most_ink(3);
+    const float own = most_ink(3, 0);
     g_assert_cmpfloat(own, >, 0.1f);
-    g_assert_cmpfloat(most_ink(4), ==, own);
-    g_assert_cmpfloat(most_ink(2), ==, 0);
-    g_assert_cmpfloat(most_ink(-1), ==, 0);
+    g_assert_cmpfloat(most_ink(4, 0), ==, own);
+    g_assert_cmpfloat(most_ink(4, 1), ==, 0); // it had none before
+    g_assert_cmpfloat(most_ink(2, 0), ==, 0);
+    g_assert_cmpfloat(most_ink(-1, 0), ==, 0);
 }
 
 /* The darkness of the green of a layer, summed. */

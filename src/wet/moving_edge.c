@@ -267,38 +267,28 @@ static void find_kept(const FlWetShape *shape, float pace_before, FlEdgePoint *p
                   (1 - fl_ease(1.3f, 2, shrunk / (moved + 3 * px)));
 }
 
-/** The absorbance of the paint seen at a place in rect in the frame before: the region's, or that
- * of a shape above it. Returns: false if both are absent. */
-static bool ink_at(const FlWetShape *shape, float x, float y, float ink[3])
+/** The paint seen some way inside, as it was laid in the frame before; none where a shape has
+ * faded. Below a shape that covers it, paint keeps the ink it had. */
+static void find_ink(const FlWetShape *shape, const FlEdgePoint *was, FlEdgePoint *point)
 {
     const FlLaid *laid = shape->laid;
-    const int px = shape->rect.x + (int)floorf(x + 0.5f),
-              py = shape->rect.y + (int)floorf(y + 0.5f);
-    if (px < 0 || py < 0 || px >= laid->width || py >= laid->height)
-        return false;
-    const size_t cell = (size_t)py * (size_t)laid->width + (size_t)px;
-    if (laid->region[cell] < shape->region)
-        return false;
-    for (size_t c = 0; c < 3; c++)
-        ink[c] = fl_wet_absorbance(laid->rgb[3 * cell + c], shape->paper[c]);
-    return true;
-}
-
-/** The paint seen some way inside, as it was laid in the frame before; none where a shape has
- * faded. */
-static void find_ink(const FlWetShape *shape, FlEdgePoint *point)
-{
     float sum[3] = {0}, weight = 0, ground[2];
     fl_wet_ground(shape, point->x, point->y, ground);
     for (int k = 1; k <= 4; k++) {
         const float depth = MIN(2.2f * (float)k * shape->px, 0.8f * point->half_width);
         const float x = point->x - depth * point->nx - point->u - ground[0];
         const float y = point->y - depth * point->ny - point->v - ground[1];
-        float ink[3];
-        if (!ink_at(shape, x, y, ink))
+        const int px = shape->rect.x + (int)floorf(x + 0.5f);
+        const int py = shape->rect.y + (int)floorf(y + 0.5f);
+        if (px < 0 || py < 0 || px >= laid->width || py >= laid->height)
             continue;
-        for (int c = 0; c < 3; c++)
-            sum[c] += ink[c];
+        const size_t cell = (size_t)py * (size_t)laid->width + (size_t)px;
+        if (laid->region[cell] < shape->region)
+            continue;
+        const bool covered = was && laid->region[cell] > shape->region;
+        for (size_t c = 0; c < 3; c++)
+            sum[c] +=
+                covered ? was->ink[c] : fl_wet_absorbance(laid->rgb[3 * cell + c], shape->paper[c]);
         weight++;
     }
     for (int c = 0; c < 3; c++)
@@ -388,8 +378,8 @@ static void find_point(const FlWetShape *shape, const FlMovingEdge *before, bool
 {
     find_speed(shape, known, point);
     find_width(shape, edge->distance, point);
-    find_ink(shape, point);
     const FlEdgePoint *was = point_before(shape, before, point);
+    find_ink(shape, was, point);
     const float speed = was ? was->speed : 0;
     find_kept(shape, was ? was->pace : 0, point);
     point->kept_before = was ? was->kept : point->kept;

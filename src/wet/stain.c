@@ -126,6 +126,9 @@ static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, floa
         stain_at(pixel, dials) * kept * (1 - cover_of(now)) * fl_ease(0, 0.1f, cover.most - now);
     for (int c = 0; c < 3; c++)
         mark.ink[c] = between(point->ink_before[c], point->ink[c], cover.last);
+    const float black = MIN(MIN(mark.ink[0], mark.ink[1]), mark.ink[2]);
+    for (int c = 0; c < 3; c++) // a little of it is no stain as dark as all
+        mark.ink[c] /= 1 + 0.6f * black;
     g_array_append_val(marks, mark);
 }
 
@@ -178,8 +181,9 @@ void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
         }
 }
 
-/** The share of an earlier front that stays: as much as the paper keeps of the paint that leaves.
- */
+/** The share of an earlier front that stays where its edge goes back: below the shape as much as
+ * the paper keeps of the paint that leaves, and none ahead of it, where no stain would be beside
+ * it. */
 static float stays(const FlWetShape *shape, const FlMovingEdge *edge, int x, int y)
 {
     const FlRect rect = shape->rect;
@@ -191,7 +195,8 @@ static float stays(const FlWetShape *shape, const FlMovingEdge *edge, int x, int
     const FlEdgePoint *point = &edge->point[edge->nearest[p]];
     const float moved = sqrtf(point->u * point->u + point->v * point->v);
     const float gone = fl_ease(1, 1.5f, -edge->distance[p] / (moved + 24 * shape->px));
-    return (1 - gone) * (1 - recedes(shape, point) * (1 - MIN(point->kept, 1)));
+    const float below = fl_ease(-2 * shape->px, 2 * shape->px, shape->distance_before[p]);
+    return (1 - gone) * (1 - recedes(shape, point) * (1 - below * MIN(point->kept, 1)));
 }
 
 void fl_marks_lose_fronts(const FlWetShape *shape, const FlMovingEdge *edge, const GArray *fronts,
