@@ -130,6 +130,21 @@ static void thick_strokes_are_limbs_and_thin_ones_lines(void)
     g_assert_cmpint(fl_drawing_region(drawing, 0)->n_leaves, ==, 2);
 }
 
+static void a_stroke_that_swells_is_one_region(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 1; t <= 4; t++) {
+        g_autofree char *name = g_strdup_printf("%d.svg", t);
+        g_autofree char *content =
+            g_strdup_printf("<rect width=\"100\" height=\"40\" fill=\"#00f\"/><path fill=\"none\" "
+                            "d=\"M10 60h80\" stroke=\"#0a0\" stroke-width=\"%d.4\"/>",
+                            t);
+        g_free(scratch_svg(folder, name, content));
+    }
+    g_autoptr(FlDrawing) drawing = open_film(&(FlDrawingOptions){0}, folder, NULL);
+    assert_table(drawing, "blue-0000ff*4 green-00aa00*4");
+}
+
 static void masked_parts_are_regions_and_faint_ones_over_others_shading(void)
 {
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
@@ -754,6 +769,7 @@ int main(int argc, char **argv)
     TEST("strokes-over-fills-are-drawn-as-they-are", strokes_over_fills_are_drawn_as_they_are);
     TEST("tiny-shapes-are-found-and-large-ones-behind-masks-are-not",
          tiny_shapes_are_found_and_large_ones_behind_masks_are_not);
+    TEST("a-stroke-that-swells-is-one-region", a_stroke_that_swells_is_one_region);
     TEST("thick-strokes-are-limbs-and-thin-ones-lines",
          thick_strokes_are_limbs_and_thin_ones_lines);
     TEST("masked-parts-are-regions-and-faint-ones-over-others-shading",

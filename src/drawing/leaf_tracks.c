@@ -93,8 +93,8 @@ static void new_track(Follow *f, int t, int i, int *row)
 
 static bool comparable(const Follow *f, const FlSurveyPart *a, const FlSurveyPart *b)
 {
-    return a->stroke == b->stroke && a->thick == b->thick &&
-           f->label_of[a->labels] == f->label_of[b->labels] && (a->leaf < 0) == (b->leaf < 0);
+    return a->stroke == b->stroke && f->label_of[a->labels] == f->label_of[b->labels] &&
+           (a->leaf < 0) == (b->leaf < 0);
 }
 
 static guint exact_hash(gconstpointer p)
@@ -107,7 +107,7 @@ static gboolean exact_equal(gconstpointer p, gconstpointer q)
 {
     const FlSurveyPart *a = p, *b = q;
     return a->paint == b->paint && a->tree == b->tree && a->stroke == b->stroke &&
-           a->thick == b->thick && a->labels == b->labels && a->part == b->part;
+           a->labels == b->labels && a->part == b->part;
 }
 
 /** Continues tracks by leaves that kept paint and place in the document, and hardly moved. */

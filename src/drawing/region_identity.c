@@ -26,6 +26,7 @@ typedef struct Work {
     int **track_of;
     int *rule_of;  // per track
     bool *is_hair; // per track: a stroke that is a hairline in all frames
+    bool *is_limb; // per track: a stroke that is thick in one of them
     int *depth_of; // per track: see fl_nesting()
     int *twin_of;  // per track: the first track whose paints change as its own do
 } Work;
@@ -139,7 +140,8 @@ static void match_rules(Work *w)
         }
 }
 
-static void find_hairlines(Work *w)
+/** A stroke that swells or shrinks is a line or a limb through all of the film. */
+static void find_hairs_and_limbs(Work *w)
 {
     const FlSurvey *survey = w->survey;
     const double hair = HAIRLINE * MAX(survey->page.width, survey->page.height);
@@ -148,8 +150,9 @@ static void find_hairlines(Work *w)
     for (int t = 0; t < survey->n_frames; t++)
         for (guint i = 0; i < survey->frame[t].parts->len; i++) {
             const FlSurveyPart *s = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
-            if (!(s->width > 0 && (double)s->width < hair))
-                w->is_hair[w->track_of[t][i]] = false;
+            const int track = w->track_of[t][i];
+            w->is_hair[track] &= s->width > 0 && (double)s->width < hair;
+            w->is_limb[track] |= s->thick;
         }
 }
 
@@ -159,7 +162,7 @@ static void find_hairlines(Work *w)
  */
 static bool is_apart(const Work *w, const FlSurveyPart *s, int track)
 {
-    const bool thick = s->thick && w->options->strokes != FL_STROKES_KEEP;
+    const bool thick = w->is_limb[track] && w->options->strokes != FL_STROKES_KEEP;
     return s->stroke && ((!w->paint_strokes && !thick) || w->is_hair[track]);
 }
 
@@ -337,7 +340,8 @@ GArray *fl_region_identities_find(FlSurvey *survey, const FlDrawingOptions *opti
     w.rule_of = g_new(int, w.tracks->len + 1);
     w.twin_of = g_new(int, w.tracks->len + 1);
     w.is_hair = g_new(bool, w.tracks->len + 1);
-    find_hairlines(&w);
+    w.is_limb = g_new0(bool, w.tracks->len + 1);
+    find_hairs_and_limbs(&w);
     for (guint k = 0; k < w.tracks->len; k++)
         w.rule_of[k] = -1;
     match_rules(&w);
@@ -350,6 +354,7 @@ GArray *fl_region_identities_find(FlSurvey *survey, const FlDrawingOptions *opti
     g_free(w.depth_of);
     g_free(w.rule_of);
     g_free(w.is_hair);
+    g_free(w.is_limb);
     g_free(w.twin_of);
     g_array_unref(w.tracks);
     g_free(w.label_of);

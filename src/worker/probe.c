@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#define THICK 0.03f  // width of a stroke, share of the page's longer side, that is no line any more
+#define THICK 0.02f  // width of a stroke, share of the page's longer side, that is no line any more
 #define PROBE_PX 256 // longest side of the small pictures on which a frame is probed
 #define TINY_PX 4.0  // side of a shape that may be there without being drawn on them
 
