@@ -55,7 +55,7 @@ result $? 'a setting of one region paints that region, and the summary says why'
 kept now --w-temp 7 && kept now --w-temp 8 && [ "$(grep -c ', since ' err)" = 1 ] &&
     grep -q '2 regions: painted 12 of 12 pictures, since w-temp was 7 and is 8' err
 result $? 'regions that are painted for one reason share a line'
-kept now -c one.conf --stats now.json && [ "$(grep -c '"taken": true' now.json)" = 12 ] && rm now.json
+kept now -c one.conf --stats now.json && [ "$(grep -c '"taken":true' now.json)" = 12 ] && rm now.json
 result $? '--stats has a line for each picture that was taken'
 for option in '--seed 3' '--boil 0.5' '--carry 0' '--detail draft' '--width 60'; do
     # shellcheck disable=SC2086

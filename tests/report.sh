@@ -18,7 +18,7 @@ result $? 'a render leaves a page'
 result $? 'the page has every frame'
 ! grep -oE '(src|href)="[^"]*"' page/index.html | grep -vE '"(data:[^"]*)?"'
 result $? 'the page refers to no other file'
-grep -q 'uses:\[{style:"01",picture:"data:image/png' page/index.html && ! grep -q 'painters:\[\[0,' page/index.html
+grep -q '"uses":\[$' page/index.html && grep -q '^{"style":"01","picture":"data:image/png' page/index.html && ! grep -q '"painters":\[\[0,' page/index.html
 result $? 'the page has energies and the use of the recording'
 "$program" w_%04d.svg -s 01 -q -o 'new_%d.png' --report page 2>err
 [ $? = 1 ] && grep -q 'page/index.html: already exists; use -y' err && [ ! -e new_1.png ]

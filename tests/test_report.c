@@ -1,66 +1,59 @@
 /* The page to look at: what is written into it. */
+#include "base/json.h"
 #include "inspect/flicker.h"
 #include "inspect/followed_point.h"
 #include "inspect/page_script.h"
 #include <math.h>
 #include <string.h>
 
-static char *written(void (*write)(FILE *out, const void *value), const void *value)
+/* The script, without what stands around it. To be freed. */
+static char *script_of(const char *value)
 {
     char *text = NULL;
     size_t n = 0;
     FILE *out = open_memstream(&text, &n);
-    write(out, value);
+    g_autoptr(GString) json = g_string_new(NULL);
+    fl_json_text(json, NULL, value);
+    fl_script_write(out, "a(", json, ");");
     fclose(out);
-    return text;
-}
-
-static void write_string(FILE *out, const void *value)
-{
-    fl_script_string(out, value);
-}
-
-static void write_number(FILE *out, const void *value)
-{
-    fl_script_number(out, *(const double *)value);
+    g_assert_true(g_str_has_prefix(text, "<script>a(") && g_str_has_suffix(text, ");</script>\n"));
+    char *script = g_strndup(text + 10, n - 10 - strlen(");</script>\n"));
+    free(text);
+    return script;
 }
 
 static void a_name_cannot_end_the_script(void)
 {
-    g_autofree char *text = written(write_string, "a</script>\"\\\n\xe2\x80\xa8é");
+    g_autofree char *text = script_of("a</script>\"\\\n\xe2\x80\xa8é");
     g_assert_cmpstr(text, ==, "\"a\\u003c/script\\u003e\\\"\\\\\\u000a\\u2028é\"");
 }
 
 static void bytes_that_are_no_text_become_text(void)
 {
-    g_autofree char *text = written(write_string, "\xff!");
+    g_autofree char *text = script_of("\xff!");
     g_assert_cmpstr(text, ==, "\"\xef\xbf\xbd!\"");
-    g_autofree char *nothing = written(write_string, NULL);
+    g_autofree char *nothing = script_of(NULL);
     g_assert_cmpstr(nothing, ==, "null");
 }
 
-static void what_is_not_known_is_null(void)
+static void numbers_are_whole_or_short_or_unknown(void)
 {
-    const double values[] = {NAN, INFINITY, 0.25};
-    const char *const expected[] = {"null", "null", "0.25"};
-    for (size_t k = 0; k < G_N_ELEMENTS(values); k++) {
-        g_autofree char *text = written(write_number, &values[k]);
-        g_assert_cmpstr(text, ==, expected[k]);
-    }
+    const double values[] = {NAN, INFINITY, 0.25, 12345678, 1.23456789};
+    g_autoptr(GString) json = g_string_new("[");
+    for (size_t k = 0; k < G_N_ELEMENTS(values); k++)
+        fl_json_number(json, NULL, values[k], true);
+    fl_json_number(json, "name", 1, false);
+    g_assert_cmpstr(json->str, ==, "[null,null,0.25,12345678,1.23457,\"name\":null");
 }
 
 static void a_picture_is_a_data_uri(void)
 {
     uint8_t rgba[] = {255, 0, 0, 128};
     const FlPicture picture = {1, 1, rgba};
-    char *text = NULL;
-    size_t n = 0;
-    FILE *out = open_memstream(&text, &n);
-    g_assert_true(fl_script_picture(out, &picture, false, NULL));
-    fclose(out);
-    g_assert_true(g_str_has_prefix(text, "\"data:image/png;base64,iVBORw0KGgo"));
-    g_assert_true(g_str_has_suffix(text, "\""));
-    free(text);
+    g_autoptr(GString) json = g_string_new("{");
+    g_assert_true(fl_script_picture(json, "it", &picture, false, NULL));
+    g_assert_true(g_str_has_prefix(json->str, "{\"it\":\"data:image/png;base64,iVBORw0KGgo"));
+    g_assert_true(g_str_has_suffix(json->str, "\""));
 }
 
 enum { WIDTH = 12, HEIGHT = 5 };
@@ -160,7 +153,7 @@ int main(int argc, char **argv)
     g_test_add_func("/report/a name cannot end the script", a_name_cannot_end_the_script);
     g_test_add_func("/report/bytes that are no text become text",
                     bytes_that_are_no_text_become_text);
-    g_test_add_func("/report/what is not known is null", what_is_not_known_is_null);
+    g_test_add_func("/report/numbers are whole, short or unknown", numbers_are_whole_or_short_or_unknown);
     g_test_add_func("/report/a picture is a data URI", a_picture_is_a_data_uri);
     g_test_add_func("/report/paint that moves with its region does not flicker",
                     paint_that_moves_with_its_region_does_not_flicker);

@@ -424,7 +424,7 @@ static const char *kind_of(const FlOption *option)
 static void append_option(GString *json, const FlOption *option)
 {
     g_autofree char *help = fl_option_help(option);
-    g_string_append(json, g_str_has_suffix(json->str, "[") ? "\n{" : ",\n{");
+    fl_json_begin(json, NULL, '{');
     fl_json_text(json, "name", option->name);
     fl_json_text(json, "section", option->section == FL_SECTION_PROJECT ? "project" : "defaults");
     fl_json_text(json, "kind", kind_of(option));
@@ -439,7 +439,7 @@ static void append_option(GString *json, const FlOption *option)
 
 static void append_style(GString *json, const FlStyleEntry *style)
 {
-    g_string_append(json, g_str_has_suffix(json->str, "[") ? "\n{" : ",\n{");
+    fl_json_begin(json, NULL, '{');
     fl_json_text(json, "name", style->name);
     fl_json_text(json, "title", style->title);
     fl_json_text(json, "character", style->character);

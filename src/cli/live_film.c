@@ -211,7 +211,7 @@ static char *facts_of(FlLiveFilm *film, const FlFilmFrame *frame)
     g_string_append_printf(json, ",\"transparent\":%s,\"numbers\":[",
                            info->transparent ? "true" : "false");
     for (int f = 0; f < info->n_frames; f++)
-        g_string_append_printf(json, f > 0 ? ",%d" : "%d", fl_film_number(film->film, f));
+        fl_json_number(json, NULL, fl_film_number(film->film, f), true);
     g_string_append(json, "],\"regions\":[");
     for (int r = 0; r < n; r++)
         append_region(json, &region[r]);

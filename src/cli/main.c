@@ -139,7 +139,7 @@ static void append_line(GString *text, const FlStyleEntry *style)
 
 static void append_object(GString *text, const FlStyleEntry *style)
 {
-    g_string_append(text, g_str_has_suffix(text->str, "}") ? ",\n {" : "\n {");
+    fl_json_begin(text, NULL, '{');
     fl_json_text(text, "style", style->name);
     fl_json_text(text, "name", style->title);
     fl_json_text(text, "character", style->character);

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/colour_map.h"
+#include "base/json.h"
 #include "inspect/page_script.h"
 
 #define HOT 8 // times the even use: the end of the colour map
@@ -87,22 +88,17 @@ static FlPicture *picture_of(const FlExemplarUse *use, GError **error)
     return picture;
 }
 
-bool fl_exemplar_use_write(const FlExemplarUse *use, FILE *out, GError **error)
+bool fl_exemplar_use_write(const FlExemplarUse *use, GString *json, GError **error)
 {
     g_autoptr(FlPicture) picture = picture_of(use, error);
     g_autofree char *style = g_path_get_basename(use->style->path);
-    if (!picture)
+    fl_json_begin(json, NULL, '{');
+    fl_json_text(json, "style", style);
+    if (!picture || !fl_script_picture(json, "picture", picture, true, error))
         return false;
-    fputs("{style:", out);
-    fl_script_string(out, style);
-    fputs(",picture:", out);
-    if (!fl_script_picture(out, picture, true, error))
-        return false;
-    fputs(",frames:[", out);
-    for (int t = 0; t < use->style->exemplar->level[0].n_frames; t++) {
-        fputs(t > 0 ? "," : "", out);
-        fl_script_number(out, (double)use->frame[t] / (double)MAX(use->total, 1));
-    }
-    fputs("]}", out);
+    fl_json_begin(json, "frames", '[');
+    for (int t = 0; t < use->style->exemplar->level[0].n_frames; t++)
+        fl_json_number(json, NULL, (double)use->frame[t] / (double)MAX(use->total, 1), true);
+    g_string_append(json, "]}");
     return true;
 }

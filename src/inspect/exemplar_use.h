@@ -3,7 +3,6 @@
 #define FLUIDY_INSPECT_EXEMPLAR_USE_H
 
 #include "compose/painted_region.h"
-#include <stdio.h>
 
 /** Counts of the matches in one recording. */
 typedef struct FlExemplarUse {
@@ -22,10 +21,10 @@ void fl_exemplar_use_clear(FlExemplarUse *use);
 void fl_exemplar_use_add(FlExemplarUse *use, const FlPaintedRegion *painted);
 
 /**
- * Writes {"style": name, "picture": …, "frames": [share, …]}: the use of each place over the
+ * Appends {"style": name, "picture": …, "frames": [share, …]}: the use of each place over the
  * recording in grey, of each frame as a share of all. FL_ERROR_NO_MEMORY.
  */
-bool fl_exemplar_use_write(const FlExemplarUse *use, FILE *out, GError **error);
+bool fl_exemplar_use_write(const FlExemplarUse *use, GString *json, GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlExemplarUse, fl_exemplar_use_clear)
 

@@ -12,6 +12,7 @@ typedef struct Task {
 /* The data of a printed plan. */
 typedef struct Farm {
     const FlPlan *plan;
+    const char *shot;           // the drawing's name
     char *folder, *paint;       // the working directory; the files between tasks and merge
     const char *const *command; // the render's
     GArray *tasks;              // of Task, largest first
@@ -143,12 +144,16 @@ static int n_commands(const Farm *farm, Step step)
     return n[step];
 }
 
-/* The word in which command k of a step differs; to be freed. */
-static char *word_of(const Farm *farm, Step step, int k)
+/* The words in which the commands of a step differ; to be freed. */
+static GPtrArray *variables_of(const Farm *farm, Step step)
 {
-    if (step == STEP_PAINT)
-        return g_strdup(g_array_index(farm->tasks, Task, k).regions->str);
-    return step == STEP_FILM ? g_strdup("film") : g_strdup_printf("%d/%d", k + 1, farm->n_parts);
+    GPtrArray *words = g_ptr_array_new_with_free_func(g_free);
+    for (int k = 0; k < n_commands(farm, step); k++)
+        g_ptr_array_add(
+            words, step == STEP_PAINT  ? g_strdup(g_array_index(farm->tasks, Task, k).regions->str)
+                   : step == STEP_FILM ? g_strdup("film")
+                                       : g_strdup_printf("%d/%d", k + 1, farm->n_parts));
+    return words;
 }
 
 static void add_all(GPtrArray *words, const char *const *more)
@@ -185,6 +190,18 @@ static GPtrArray *words_of(const Farm *farm, Step step, const char *variable)
     return words;
 }
 
+/* The words from `first` up to `end`, each as `add` writes it. */
+static char *join(const GPtrArray *words, guint first, guint end,
+                  void (*add)(GString *text, const char *word), const char *separator)
+{
+    GString *text = g_string_new(NULL);
+    for (guint k = first; k < end; k++) {
+        g_string_append(text, k > first ? separator : "");
+        add(text, words->pdata[k]);
+    }
+    return g_string_free(text, FALSE);
+}
+
 /* ---- JSON ----------------------------------------------------------------------------------- */
 
 static bool is_text(const char *word)
@@ -216,28 +233,25 @@ static bool words_fit(const Farm *farm, const char *dialect, bool (*fits)(const 
     return true;
 }
 
-static void add_json_command(GString *text, const Farm *farm, Step step, const char *variable)
+static char *json_list(const GPtrArray *words)
 {
-    g_autoptr(GPtrArray) words = words_of(farm, step, variable);
-    g_string_append(text, "\"command\": [");
-    for (guint k = 0; k < words->len; k++) {
-        g_string_append(text, k > 0 ? ", " : "");
-        fl_json_string(text, words->pdata[k]);
-    }
-    g_string_append(text, "]}");
+    return join(words, 0, words->len, fl_json_string, ", ");
 }
 
-static void add_json_step(GString *text, const Farm *farm, Step step)
+static void add_json_step(GString *text, const char *name, const Farm *farm, Step step)
 {
-    for (int k = 0; k < n_commands(farm, step); k++) {
-        g_autofree char *word = word_of(farm, step, k);
-        g_string_append(text, k > 0 ? ",\n  {" : "\n  {");
-        fl_json_text(text, step == STEP_PAINT ? "regions" : "part", word);
+    g_autoptr(GPtrArray) variables = variables_of(farm, step);
+    fl_json_begin(text, name, '[');
+    for (guint k = 0; k < variables->len; k++) {
+        g_autoptr(GPtrArray) words = words_of(farm, step, variables->pdata[k]);
+        g_autofree char *command = json_list(words);
+        fl_json_begin(text, NULL, '{');
+        fl_json_text(text, step == STEP_PAINT ? "regions" : "part", variables->pdata[k]);
         if (step == STEP_PAINT)
             fl_json_number(text, "share", g_array_index(farm->tasks, Task, k).share, true);
-        g_string_append(text, ", ");
-        add_json_command(text, farm, step, word);
+        g_string_append_printf(text, ",\"command\":[%s]}", command);
     }
+    g_string_append_c(text, ']');
 }
 
 static char *print_json(const Farm *farm, GError **error)
@@ -245,18 +259,14 @@ static char *print_json(const Farm *farm, GError **error)
     if (!words_fit(farm, "JSON", is_text, error))
         return NULL;
     GString *text = g_string_new("{");
-    fl_json_text(text, "shot", fl_drawing_name(farm->plan->shapes.drawing));
+    fl_json_text(text, "shot", farm->shot);
     fl_json_text(text, "folder", farm->folder);
-    fl_json_number(text, "frames", fl_drawing_frames(farm->plan->shapes.drawing), true);
+    fl_json_number(text, "frames", farm->plan->shapes.n_frames, true);
     fl_json_number(text, "again_status", 75, true);
-    g_string_append(text, ",\n \"tasks\": [");
-    add_json_step(text, farm, STEP_PAINT);
-    g_string_append(text, "],\n \"merge\": [");
-    add_json_step(text, farm, STEP_MERGE);
-    g_string_append(text, "],\n \"film\": [");
-    add_json_step(text, farm, STEP_FILM);
-    g_string_append(text, "]\n}\n");
-    return g_string_free(text, FALSE);
+    add_json_step(text, "tasks", farm, STEP_PAINT);
+    add_json_step(text, "merge", farm, STEP_MERGE);
+    add_json_step(text, "film", farm, STEP_FILM);
+    return g_string_free(g_string_append(text, "}\n"), FALSE);
 }
 
 /* ---- Slurm ---------------------------------------------------------------------------------- */
@@ -288,79 +298,67 @@ static const struct {
                    [STEP_MERGE] = {"merge", "merge ", "MERGE"},
                    [STEP_FILM] = {"film", "", "FILM"}};
 
-/* Sets $what, in which the commands of a step differ. */
-static void add_slurm_variable(GString *text, const Farm *farm, Step step)
-{
-    g_string_append(text, "all=(\n");
-    for (int k = 0; k < n_commands(farm, step); k++) {
-        g_autofree char *word = word_of(farm, step, k);
-        add_bash_word(text, word);
-        g_string_append_c(text, '\n');
-    }
-    g_string_append(text, ")\nwhat=${all[${SLURM_ARRAY_TASK_ID:-0}]}\n");
-}
-
-static void add_slurm_words(GString *text, const Farm *farm, Step step)
+/* The command of a step, with $what for the word in which the commands differ. */
+static char *slurm_command(const Farm *farm, Step step)
 {
     g_autoptr(GPtrArray) words = words_of(farm, step, "");
-    const bool varies = step != STEP_MERGE || farm->n_parts > 1;
-    for (guint k = 0; k < words->len; k++) {
-        g_string_append(text, k > 0 ? " " : "");
-        if (varies && k == VARIABLE)
-            g_string_append(text, "\"$what\"");
-        else
-            add_bash_word(text, words->pdata[k]);
-    }
+    if (step == STEP_MERGE && farm->n_parts == 1)
+        return join(words, 0, words->len, add_bash_word, " ");
+    g_autofree char *before = join(words, 0, VARIABLE, add_bash_word, " ");
+    g_autofree char *after = join(words, VARIABLE + 1, words->len, add_bash_word, " ");
+    return g_strdup_printf("%s \"$what\" %s", before, after);
+}
+
+/* What sbatch is told of a step besides: that its commands are an array, and which step is first.
+ */
+static char *slurm_options(const Farm *farm, Step step)
+{
+    const int n = n_commands(farm, step);
+    g_autofree char *array =
+        step == STEP_PAINT || n > 1 ? g_strdup_printf(" --array=0-%d", n - 1) : g_strdup("");
+    return step > STEP_PAINT ? g_strdup_printf("%s --dependency=afterok:\"${%s%%%%;*}\"", array,
+                                               slurm_steps[step - 1].variable)
+                             : g_steal_pointer(&array);
 }
 
 /**
- * The script of a step. Its log lines begin with shot and regions. A task that is told to stop ends
- * with 75 and is queued again while Slurm calls it "RUNNING": a cancelled task is not, and one that
- * Slurm requeues by itself waits already.
+ * Submits a step that starts after the previous one. Its log lines begin with shot and regions. A
+ * task that is told to stop ends with 75 and is queued again while Slurm calls it "RUNNING": a
+ * cancelled task is not, and one that Slurm requeues by itself waits already.
  */
-static void add_slurm_body(GString *text, const Farm *farm, Step step)
-{
-    g_string_append(text, "shot=");
-    add_bash_word(text, fl_drawing_name(farm->plan->shapes.drawing));
-    g_string_append_c(text, '\n');
-    add_slurm_variable(text, farm, step);
-    g_string_append_printf(text,
-                           "label=\"$(printf %%q \"$shot\") %s$what\"\n"
-                           "exec > >(while IFS= read -r line || [ -n \"$line\" ]; do\n"
-                           "    printf '%%s: %%s\\n' \"$label\" \"$line\"\n"
-                           "done) 2>&1\n",
-                           slurm_steps[step].label);
-    add_slurm_words(text, farm, step);
-    g_string_append(text, " --progress plain &\n"
-                          "job=$! stopped=\n"
-                          "trap 'stopped=yes; kill -TERM $job' TERM INT\n"
-                          "wait $job; status=$?\n"
-                          "[ -z \"$stopped\" ] || { wait $job; status=$?; }\n"
-                          "if [ $status = 75 ]; then\n"
-                          "    case $(squeue -h -j \"$SLURM_JOB_ID\" -o %T) in\n"
-                          "    RUNNING | '') scontrol requeue \"$SLURM_JOB_ID\" ;;\n"
-                          "    esac\n"
-                          "fi\n"
-                          "exit $status\n");
-}
-
-/* Submits a step that starts after the previous step. */
 static void add_slurm_step(GString *text, const Farm *farm, Step step)
 {
-    const int n = n_commands(farm, step);
-    g_string_append_printf(text,
-                           "%s=$(sbatch --parsable --requeue --open-mode=append "
-                           "--signal=B:TERM@60 --job-name=",
-                           slurm_steps[step].variable);
-    add_bash_word(text, fl_drawing_name(farm->plan->shapes.drawing));
-    if (step == STEP_PAINT || n > 1)
-        g_string_append_printf(text, " --array=0-%d", n - 1);
-    if (step > STEP_PAINT)
-        g_string_append_printf(text, " --dependency=afterok:\"${%s%%%%;*}\"",
-                               slurm_steps[step - 1].variable);
-    g_string_append_printf(text, " \"$@\" <<'%s'\n#!/bin/bash\n", slurm_steps[step].end);
-    add_slurm_body(text, farm, step);
-    g_string_append_printf(text, "%s\n)\n", slurm_steps[step].end);
+    g_autoptr(GPtrArray) variables = variables_of(farm, step);
+    g_autofree char *command = slurm_command(farm, step), *options = slurm_options(farm, step);
+    g_autofree char *all = join(variables, 0, variables->len, add_bash_word, "\n");
+    g_autoptr(GString) shot = g_string_new(NULL);
+    add_bash_word(shot, farm->shot);
+    g_string_append_printf(
+        text,
+        "%s=$(sbatch --parsable --requeue --open-mode=append --signal=B:TERM@60 --job-name=%s%s "
+        "\"$@\" <<'%s'\n"
+        "#!/bin/bash\n"
+        "shot=%s\n"
+        "all=(\n%s\n)\n"
+        "what=${all[${SLURM_ARRAY_TASK_ID:-0}]}\n"
+        "label=\"$(printf %%q \"$shot\") %s$what\"\n"
+        "exec > >(while IFS= read -r line || [ -n \"$line\" ]; do\n"
+        "    printf '%%s: %%s\\n' \"$label\" \"$line\"\n"
+        "done) 2>&1\n"
+        "%s --progress plain &\n"
+        "job=$! stopped=\n"
+        "trap 'stopped=yes; kill -TERM $job' TERM INT\n"
+        "wait $job; status=$?\n"
+        "[ -z \"$stopped\" ] || { wait $job; status=$?; }\n"
+        "if [ $status = 75 ]; then\n"
+        "    case $(squeue -h -j \"$SLURM_JOB_ID\" -o %%T) in\n"
+        "    RUNNING | '') scontrol requeue \"$SLURM_JOB_ID\" ;;\n"
+        "    esac\n"
+        "fi\n"
+        "exit $status\n"
+        "%s\n)\n",
+        slurm_steps[step].variable, shot->str, options, slurm_steps[step].end, shot->str, all,
+        slurm_steps[step].label, command, slurm_steps[step].end);
 }
 
 static char *print_slurm(const Farm *farm, GError **error)
@@ -387,10 +385,11 @@ static char *print_slurm(const Farm *farm, GError **error)
 /* ---- Open Job Description ------------------------------------------------------------------- */
 
 static const struct {
-    const char *name, *parameter;
-} openjd_steps[] = {[STEP_PAINT] = {"Paint", "Regions"},
-                    [STEP_MERGE] = {"Merge", "Part"},
-                    [STEP_FILM] = {"Film", "Part"}};
+    const char *name, *parameter, *after;
+} openjd_steps[] = {
+    [STEP_PAINT] = {"Paint", "Regions", ""},
+    [STEP_MERGE] = {"Merge", "Part", ",\"dependencies\":[{\"dependsOn\":\"Paint\"}]"},
+    [STEP_FILM] = {"Film", "Part", ",\"dependencies\":[{\"dependsOn\":\"Merge\"}]"}};
 
 /* The schema takes double braces as references, allows no control characters in an argument, and
  * knows no escapes. */
@@ -405,38 +404,23 @@ static bool is_argument(const char *word)
 }
 
 /* A task runs in the folder of the plan, a parameter that the scheduler may map to another path. */
-static void add_action(GString *text, const Farm *farm, Step step)
-{
-    g_autofree char *variable = g_strdup_printf("{{Task.Param.%s}}", openjd_steps[step].parameter);
-    g_autoptr(GPtrArray) words = words_of(farm, step, variable);
-    g_string_append(text, "\"script\": {\"actions\": {\"onRun\": {");
-    g_string_append(text, "\"command\": \"bash\", \"args\": [\"-c\", "
-                          "\"cd -- \\\"$0\\\" && exec \\\"$@\\\"\", \"{{Param.Folder}}\"");
-    for (guint k = 0; k < words->len; k++) {
-        g_string_append(text, ", ");
-        fl_json_string(text, words->pdata[k]);
-    }
-    g_string_append(text, "]}}}");
-}
-
 static void add_openjd_step(GString *text, const Farm *farm, Step step)
 {
-    g_string_append(text, step > STEP_PAINT ? ",\n  {" : "\n  {");
+    const char *parameter = openjd_steps[step].parameter;
+    g_autofree char *variable = g_strdup_printf("{{Task.Param.%s}}", parameter);
+    g_autoptr(GPtrArray) words = words_of(farm, step, variable);
+    g_autoptr(GPtrArray) variables = variables_of(farm, step);
+    g_autofree char *args = json_list(words), *range = json_list(variables);
+    fl_json_begin(text, NULL, '{');
     fl_json_text(text, "name", openjd_steps[step].name);
-    if (step > STEP_PAINT)
-        g_string_append_printf(text, ", \"dependencies\": [{\"dependsOn\": \"%s\"}]",
-                               openjd_steps[step - 1].name);
-    g_string_append(text, ",\n   \"parameterSpace\": {\"taskParameterDefinitions\": [{\"name\": ");
-    fl_json_string(text, openjd_steps[step].parameter);
-    g_string_append(text, ", \"type\": \"STRING\", \"range\": [");
-    for (int k = 0; k < n_commands(farm, step); k++) {
-        g_autofree char *word = word_of(farm, step, k);
-        g_string_append(text, k > 0 ? ", " : "");
-        fl_json_string(text, word);
-    }
-    g_string_append(text, "]}]},\n   ");
-    add_action(text, farm, step);
-    g_string_append(text, "}");
+    g_string_append_printf(
+        text,
+        "%s,\n \"parameterSpace\":{\"taskParameterDefinitions\":["
+        "{\"name\":\"%s\",\"type\":\"STRING\",\"range\":[%s]}]},\n "
+        "\"script\":{\"actions\":{\"onRun\":"
+        "{\"command\":\"bash\",\"args\":[\"-c\",\"cd -- \\\"$0\\\" && exec \\\"$@\\\"\","
+        "\"{{Param.Folder}}\",%s]}}}}",
+        openjd_steps[step].after, parameter, range, args);
 }
 
 /* The name of a job has 128 characters at most. */
@@ -445,21 +429,19 @@ static char *print_openjd(const Farm *farm, GError **error)
     if (!words_fit(farm, "Open Job Description", is_argument, error))
         return NULL;
     g_autofree char *name =
-        g_utf8_substring(fl_drawing_name(farm->plan->shapes.drawing), 0,
-                         MIN(128, g_utf8_strlen(fl_drawing_name(farm->plan->shapes.drawing), -1)));
+        g_utf8_substring(farm->shot, 0, MIN(128, g_utf8_strlen(farm->shot, -1)));
     GString *text = g_string_new("{");
     fl_json_text(text, "specificationVersion", "jobtemplate-2023-09");
     fl_json_text(text, "name", name);
-    g_string_append(text,
-                    ",\n \"parameterDefinitions\": [\n  {\"name\": \"Folder\", \"type\": \"PATH\", "
-                    "\"objectType\": \"DIRECTORY\", \"dataFlow\": \"INOUT\"");
+    g_string_append(text, ",\n\"parameterDefinitions\":[{\"name\":\"Folder\",\"type\":\"PATH\","
+                          "\"objectType\":\"DIRECTORY\",\"dataFlow\":\"INOUT\"");
     fl_json_text(text, "default", farm->folder);
-    g_string_append(text, "}\n ],\n \"steps\": [");
+    g_string_append(text, "}]");
+    fl_json_begin(text, "steps", '[');
     for (Step step = STEP_PAINT; step <= STEP_FILM; step++)
         if (n_commands(farm, step) > 0)
             add_openjd_step(text, farm, step);
-    g_string_append(text, "\n ]\n}\n");
-    return g_string_free(text, FALSE);
+    return g_string_free(g_string_append(text, "]}\n"), FALSE);
 }
 
 /* ---- the plan ------------------------------------------------------------------------------- */
@@ -503,6 +485,7 @@ char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *cons
         return NULL;
     }
     Farm all = {.plan = plan,
+                .shot = fl_drawing_name(plan->shapes.drawing),
                 .folder = g_get_current_dir(),
                 .paint = paint_pattern(plan, options->paint),
                 .command = command,

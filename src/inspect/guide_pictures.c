@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/colour_map.h"
+#include "base/json.h"
 #include "inspect/page_script.h"
 #include <float.h>
 #include <math.h>
@@ -129,42 +130,35 @@ static void colour_flow(const FlGuideView *view, float full)
     }
 }
 
-static void write_arrows(const FlGuideView *view, FILE *out)
+static void write_arrows(const FlGuideView *view, GString *json)
 {
     const int width = view->picture[0]->width, height = view->picture[0]->height;
-    const char *comma = "";
-    fputc('[', out);
+    fl_json_begin(json, "arrows", '[');
     for (int y = ARROW_EVERY / 2; y < height; y += ARROW_EVERY)
         for (int x = ARROW_EVERY / 2; x < width; x += ARROW_EVERY) {
             const size_t p = (size_t)y * width + x;
             if (view->owner[p] == 0)
                 continue;
-            fprintf(out, "%s%d,%d,", comma, x, y);
-            fl_script_number(out, view->flow[2 * p]);
-            fputc(',', out);
-            fl_script_number(out, view->flow[2 * p + 1]);
-            comma = ",";
+            fl_json_number(json, NULL, x, true);
+            fl_json_number(json, NULL, y, true);
+            fl_json_number(json, NULL, (double)view->flow[2 * p], true);
+            fl_json_number(json, NULL, (double)view->flow[2 * p + 1], true);
         }
-    fputc(']', out);
+    g_string_append_c(json, ']');
 }
 
-bool fl_guide_view_write(const FlGuideView *view, FILE *out, GError **error)
+bool fl_guide_view_write(const FlGuideView *view, GString *json, GError **error)
 {
     static const char *const names[FL_GUIDE_PICTURES] = {"distance",  "flow", "ext_plus",
                                                          "ext_minus", "time", "place"};
     const float full = fastest(view);
     colour_flow(view, MAX(full, FLT_MIN));
-    fputc('{', out);
-    for (int k = 0; k < FL_GUIDE_PICTURES; k++) {
-        fprintf(out, "\"%s\":", names[k]);
-        if (!fl_script_picture(out, view->picture[k], false, error))
+    fl_json_begin(json, "guides", '{');
+    for (int k = 0; k < FL_GUIDE_PICTURES; k++)
+        if (!fl_script_picture(json, names[k], view->picture[k], false, error))
             return false;
-        fputc(',', out);
-    }
-    fputs("\"fastest\":", out);
-    fl_script_number(out, full);
-    fputs(",\"arrows\":", out);
-    write_arrows(view, out);
-    fputc('}', out);
+    fl_json_number(json, "fastest", (double)full, true);
+    write_arrows(view, json);
+    g_string_append_c(json, '}');
     return true;
 }

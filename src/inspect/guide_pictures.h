@@ -4,7 +4,6 @@
 
 #include "base/picture.h"
 #include "compose/painted_region.h"
-#include <stdio.h>
 
 typedef enum FlGuidePicture {
     FL_GUIDE_DISTANCE,  // 0 to three widths of the border
@@ -34,9 +33,9 @@ void fl_guide_view_add(FlGuideView *view, int p, const FlPaintedRegion *painted,
                        const FlGuides *guides);
 
 /**
- * Writes {"distance": picture, …, "fastest": speed, "arrows": [x, y, u, v, …]}, in px of the
- * pictures per frame. FL_ERROR_NO_MEMORY.
+ * Appends "guides": {"distance": picture, …, "fastest": speed, "arrows": [x, y, u, v, …]}, in px of
+ * the pictures per frame. FL_ERROR_NO_MEMORY.
  */
-bool fl_guide_view_write(const FlGuideView *view, FILE *out, GError **error);
+bool fl_guide_view_write(const FlGuideView *view, GString *json, GError **error);
 
 #endif

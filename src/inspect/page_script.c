@@ -4,7 +4,6 @@
 #include "io/png.h"
 #include "params/options.h"
 #include <gio/gio.h>
-#include <math.h>
 #include <string.h>
 
 #define MARK "<!-- the frames -->" // in page.html
@@ -46,7 +45,7 @@ GBytes *fl_live_page(void)
     return g_byte_array_free_to_bytes(page);
 }
 
-void fl_script_string(FILE *out, const char *text)
+void fl_script_write(FILE *out, const char *before, GString *json, const char *after)
 {
     // "<" could begin "</script>", and U+2028 and U+2029 end a line of old JavaScript.
     static const char *const escaped[][2] = {{"<", "\\u003c"},
@@ -54,25 +53,13 @@ void fl_script_string(FILE *out, const char *text)
                                              {"&", "\\u0026"},
                                              {"\u2028", "\\u2028"},
                                              {"\u2029", "\\u2029"}};
-    g_autoptr(GString) json = g_string_new(NULL);
-    fl_json_string(json, text);
     for (size_t k = 0; k < G_N_ELEMENTS(escaped); k++)
         g_string_replace(json, escaped[k][0], escaped[k][1], 0);
-    fputs(json->str, out);
+    fprintf(out, "<script>%s%s%s</script>\n", before, json->str, after);
 }
 
-void fl_script_number(FILE *out, double value)
-{
-    char text[G_ASCII_DTOSTR_BUF_SIZE];
-    fputs(isfinite(value) ? g_ascii_formatd(text, sizeof text, "%.6g", value) : "null", out);
-}
-
-void fl_script_colour(FILE *out, const uint8_t rgb[3])
-{
-    fprintf(out, "\"#%02x%02x%02x\"", rgb[0], rgb[1], rgb[2]);
-}
-
-bool fl_script_picture(FILE *out, const FlPicture *picture, bool opaque, GError **error)
+bool fl_script_picture(GString *json, const char *name, const FlPicture *picture, bool opaque,
+                       GError **error)
 {
     const FlPng png = {.width = picture->width,
                        .height = picture->height,
@@ -86,6 +73,7 @@ bool fl_script_picture(FILE *out, const FlPicture *picture, bool opaque, GError 
     gsize n = 0;
     const guchar *data = g_bytes_get_data(bytes, &n);
     g_autofree char *text = g_base64_encode(data, n);
-    fprintf(out, "\"data:image/png;base64,%s\"", text);
+    g_autofree char *uri = g_strconcat("data:image/png;base64,", text, NULL);
+    fl_json_text(json, name, uri);
     return true;
 }

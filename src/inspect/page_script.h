@@ -1,4 +1,4 @@
-/* Writes JavaScript values into a page. */
+/* The page of a report, and the scripts in it. */
 #ifndef FLUIDY_INSPECT_PAGE_SCRIPT_H
 #define FLUIDY_INSPECT_PAGE_SCRIPT_H
 
@@ -15,18 +15,15 @@ typedef enum FlPagePart { FL_PAGE_HEAD, FL_PAGE_REST } FlPagePart;
 /** Returns: to be freed with g_bytes_unref(). */
 GBytes *fl_page_part(FlPagePart part);
 
-/** A quoted string; NULL: null. Whatever it contains, it ends neither itself nor the script. */
-void fl_script_string(FILE *out, const char *text);
-
-/** A number, with six digits; null if it is not finite. */
-void fl_script_number(FILE *out, double value);
-
-/** "#rrggbb" in quotes. */
-void fl_script_colour(FILE *out, const uint8_t rgb[3]);
-
 /**
- * A picture as a data URI in quotes, with alpha unless it is opaque. FL_ERROR_NO_MEMORY.
+ * Appends a picture as a data URI in quotes, with alpha unless it is opaque; name as of
+ * fl_json_text(). FL_ERROR_NO_MEMORY.
  */
-bool fl_script_picture(FILE *out, const FlPicture *picture, bool opaque, GError **error);
+bool fl_script_picture(GString *json, const char *name, const FlPicture *picture, bool opaque,
+                       GError **error);
+
+/** Writes a script of JSON between two pieces. Whatever the JSON holds, it does not end the script;
+ * it is changed for that. */
+void fl_script_write(FILE *out, const char *before, GString *json, const char *after);
 
 #endif

@@ -49,72 +49,104 @@ static bool subject_read(Subject *subject, GError **error)
     return subject->drawing != NULL;
 }
 
+/* ---- data ---------------------------------------------------------------------------------- */
+
+static FlRegionInfo *region_info(const Subject *subject, const FlRegion *r)
+{
+    FlRegionInfo *info = g_new(FlRegionInfo, 1);
+    const char *section = r->rule >= 0 ? subject->config->rules[r->rule].name : NULL;
+    const int first = r->n_present > 0 ? fl_drawing_number(subject->drawing, r->first_frame) : 0;
+    *info = (FlRegionInfo){.name = g_strdup(r->name),
+                           .paint = g_strdup(r->paint),
+                           .layer = g_strdup(r->label),
+                           .section = g_strdup(section),
+                           .n_frames = r->n_present,
+                           .first_frame = first,
+                           .n_shapes = r->n_leaves,
+                           .area_px = r->area_px,
+                           .painted = r->paintable};
+    return info;
+}
+
+static FlRegionList *list_of(const Subject *subject)
+{
+    const FlDrawing *drawing = subject->drawing;
+    const int n = fl_drawing_regions(drawing);
+    FlRegionInfo **region = g_new0(FlRegionInfo *, MAX(n, 1));
+    for (int r = 0; r < n; r++)
+        region[r] = region_info(subject, fl_drawing_region(drawing, r));
+    FlRegionList *list = g_new(FlRegionList, 1);
+    *list = (FlRegionList){fl_drawing_width(drawing), fl_drawing_height(drawing),
+                           fl_drawing_frames(drawing), n, region};
+    return list;
+}
+
+FlRegionList *fl_region_list_new(const FlRenderOptions *options, GError **error)
+{
+    g_auto(Subject) subject = {0};
+    const bool read = subject_configure(&subject, options, error) && subject_read(&subject, error);
+    return read ? list_of(&subject) : NULL;
+}
+
+void fl_region_list_free(FlRegionList *list)
+{
+    for (int r = 0; list && r < list->n_regions; r++) {
+        FlRegionInfo *info = list->region[r];
+        g_free(info->name);
+        g_free(info->paint);
+        g_free(info->layer);
+        g_free(info->section);
+        g_free(info);
+    }
+    if (list)
+        g_free((void *)list->region);
+    g_free(list);
+}
+
 /* ---- tables ------------------------------------------------------------------------------- */
 
-enum { NAME, PAINT, FRAMES, AREA, SHAPES, PAINTED, SECTION, LABEL, N_COLUMNS };
+enum { FRAMES = 2, AREA = 3, SHAPES = 4, N_COLUMNS = 8 };
 
-typedef struct Row {
-    char *cell[N_COLUMNS];
-} Row;
-
-static void row_clear(void *row)
+/* The cells of a region; no text has a tab. To be freed with g_strfreev(). */
+static char **cells_of(const FlRegionList *list, const FlRegionInfo *r)
 {
-    for (int c = 0; c < N_COLUMNS; c++)
-        g_free(((Row *)row)->cell[c]);
-}
-
-static Row heading(void)
-{
-    static const char *const words[N_COLUMNS] = {"REGION", "PAINT",   "FRAMES",  "AREA",
-                                                 "SHAPES", "PAINTED", "SECTION", "LAYER"};
-    Row row;
-    for (int c = 0; c < N_COLUMNS; c++)
-        row.cell[c] = g_strdup(words[c]);
-    return row;
-}
-
-static Row describe(const Subject *subject, int region)
-{
-    const FlRegion *r = fl_drawing_region(subject->drawing, region);
-    const char *section = r->rule >= 0 ? subject->config->rules[r->rule].name : "-";
-    return (Row){{fl_one_line(r->name), fl_one_line(r->paint),
-                  g_strdup_printf("%d/%d", r->n_present, fl_drawing_frames(subject->drawing)),
-                  g_strdup_printf("%.0f", r->area_px), g_strdup_printf("%d", r->n_leaves),
-                  g_strdup(r->paintable ? "yes" : "no"), fl_one_line(section),
-                  fl_one_line(*r->label ? r->label : "-")}};
+    g_autofree char *name = fl_one_line(r->name), *paint = fl_one_line(r->paint);
+    g_autofree char *section = fl_one_line(r->section ? r->section : "-");
+    g_autofree char *layer = fl_one_line(*r->layer ? r->layer : "-");
+    g_autofree char *row = g_strdup_printf("%s\t%s\t%d/%d\t%.0f\t%d\t%s\t%s\t%s", name, paint,
+                                           r->n_frames, list->n_frames, r->area_px, r->n_shapes,
+                                           r->painted ? "yes" : "no", section, layer);
+    return g_strsplit(row, "\t", N_COLUMNS);
 }
 
 /* Numbers are right-aligned. */
-static void append_row(GString *text, const Row *row, const int widths[N_COLUMNS])
+static void append_row(GString *text, char *const *cell, const int widths[N_COLUMNS])
 {
     for (int c = 0; c < N_COLUMNS; c++) {
-        const int gap = widths[c] - (int)g_utf8_strlen(row->cell[c], -1);
+        const int gap = widths[c] - (int)g_utf8_strlen(cell[c], -1);
         const bool right = c == FRAMES || c == AREA || c == SHAPES;
         if (c == N_COLUMNS - 1)
-            g_string_append_printf(text, "%s\n", row->cell[c]);
+            g_string_append_printf(text, "%s\n", cell[c]);
         else
-            g_string_append_printf(text, "%*s%s%*s  ", right ? gap : 0, "", row->cell[c],
+            g_string_append_printf(text, "%*s%s%*s  ", right ? gap : 0, "", cell[c],
                                    right ? 0 : gap, "");
     }
 }
 
-static char *table(const Subject *subject)
+static char *table(const FlRegionList *list)
 {
-    g_autoptr(GArray) rows = g_array_new(FALSE, FALSE, sizeof(Row));
-    g_array_set_clear_func(rows, row_clear);
-    const Row top = heading();
-    g_array_append_val(rows, top);
-    for (int r = 0; r < fl_drawing_regions(subject->drawing); r++) {
-        const Row row = describe(subject, r);
-        g_array_append_val(rows, row);
-    }
+    g_autoptr(GPtrArray) rows = g_ptr_array_new_with_free_func((GDestroyNotify)g_strfreev);
+    g_ptr_array_add(rows,
+                    g_strsplit("REGION PAINT FRAMES AREA SHAPES PAINTED SECTION LAYER", " ", -1));
+    for (int r = 0; r < list->n_regions; r++)
+        g_ptr_array_add(rows, cells_of(list, list->region[r]));
     int widths[N_COLUMNS] = {0};
     for (guint i = 0; i < rows->len; i++)
         for (int c = 0; c < N_COLUMNS; c++)
-            widths[c] = MAX(widths[c], (int)g_utf8_strlen(g_array_index(rows, Row, i).cell[c], -1));
+            widths[c] = MAX(widths[c], (int)g_utf8_strlen(((char **)rows->pdata[i])[c], -1));
     GString *text = g_string_new(NULL);
     for (guint i = 0; i < rows->len; i++)
-        append_row(text, &g_array_index(rows, Row, i), widths);
+        append_row(text, rows->pdata[i], widths);
     return g_string_free(text, FALSE);
 }
 
@@ -246,39 +278,35 @@ static char *config_text(const Subject *subject)
 
 /* ---- JSON --------------------------------------------------------------------------------- */
 
-static void append_region(GString *json, const Subject *subject, const FlRegion *r)
+static void append_region(GString *json, const FlRegionInfo *r)
 {
-    const int first = fl_drawing_number(subject->drawing, r->first_frame);
-    g_string_append(json, "\n  {");
+    fl_json_begin(json, NULL, '{');
     fl_json_text(json, "region", r->name);
     fl_json_text(json, "paint", r->paint);
-    fl_json_number(json, "frames", r->n_present, true);
-    fl_json_number(json, "first_frame", first, r->n_present > 0);
+    fl_json_number(json, "frames", r->n_frames, true);
+    fl_json_number(json, "first_frame", r->first_frame, r->n_frames > 0);
     fl_json_number(json, "area_px", r->area_px, true);
-    fl_json_number(json, "shapes", r->n_leaves, true);
-    g_string_append_printf(json, ",\"painted\":%s", r->paintable ? "true" : "false");
-    fl_json_text(json, "section", r->rule >= 0 ? subject->config->rules[r->rule].name : NULL);
-    fl_json_text(json, "layer", *r->label ? r->label : NULL);
+    fl_json_number(json, "shapes", r->n_shapes, true);
+    fl_json_bool(json, "painted", r->painted);
+    fl_json_text(json, "section", r->section);
+    fl_json_text(json, "layer", *r->layer ? r->layer : NULL);
     g_string_append_c(json, '}');
 }
 
-static char *json_text(const Subject *subject)
+static char *json_text(const FlDrawing *drawing, const FlRegionList *list)
 {
-    const FlDrawing *drawing = subject->drawing;
-    const int n = fl_drawing_regions(drawing), frames = fl_drawing_frames(drawing);
     GString *json = g_string_new("{");
     fl_json_text(json, "drawing", fl_drawing_name(drawing));
-    fl_json_number(json, "width", fl_drawing_width(drawing), true);
-    fl_json_number(json, "height", fl_drawing_height(drawing), true);
-    g_string_append(json, ",\n \"frames\":[");
-    for (int f = 0; f < frames; f++)
-        g_string_append_printf(json, "%s%d", f ? "," : "", fl_drawing_number(drawing, f));
-    g_string_append(json, "],\n \"regions\":[");
-    for (int r = 0; r < n; r++) {
-        g_string_append(json, r ? "," : "");
-        append_region(json, subject, fl_drawing_region(drawing, r));
-    }
-    g_string_append(json, "\n ]}\n");
+    fl_json_number(json, "width", list->width, true);
+    fl_json_number(json, "height", list->height, true);
+    fl_json_begin(json, "frames", '[');
+    for (int f = 0; f < list->n_frames; f++)
+        fl_json_number(json, NULL, fl_drawing_number(drawing, f), true);
+    g_string_append_c(json, ']');
+    fl_json_begin(json, "regions", '[');
+    for (int r = 0; r < list->n_regions; r++)
+        append_region(json, list->region[r]);
+    g_string_append(json, "]}\n");
     return g_string_free(json, FALSE);
 }
 
@@ -287,59 +315,10 @@ char *fl_list_regions(const FlRenderOptions *options, FlListing listing, GError 
     g_auto(Subject) subject = {0};
     if (!subject_configure(&subject, options, error) || !subject_read(&subject, error))
         return NULL;
+    g_autoptr(FlRegionList) list = list_of(&subject);
     return listing == FL_LISTING_CONFIG ? config_text(&subject)
-           : listing == FL_LISTING_JSON ? json_text(&subject)
-                                        : table(&subject);
-}
-
-/* ---- data ---------------------------------------------------------------------------------- */
-
-static FlRegionInfo *region_info(const Subject *subject, const FlRegion *r)
-{
-    FlRegionInfo *info = g_new(FlRegionInfo, 1);
-    const char *section = r->rule >= 0 ? subject->config->rules[r->rule].name : NULL;
-    const int first = r->n_present > 0 ? fl_drawing_number(subject->drawing, r->first_frame) : 0;
-    *info = (FlRegionInfo){.name = g_strdup(r->name),
-                           .paint = g_strdup(r->paint),
-                           .layer = g_strdup(r->label),
-                           .section = g_strdup(section),
-                           .n_frames = r->n_present,
-                           .first_frame = first,
-                           .n_shapes = r->n_leaves,
-                           .area_px = r->area_px,
-                           .painted = r->paintable};
-    return info;
-}
-
-FlRegionList *fl_region_list_new(const FlRenderOptions *options, GError **error)
-{
-    g_auto(Subject) subject = {0};
-    if (!subject_configure(&subject, options, error) || !subject_read(&subject, error))
-        return NULL;
-    const FlDrawing *drawing = subject.drawing;
-    const int n = fl_drawing_regions(drawing);
-    FlRegionInfo **region = g_new0(FlRegionInfo *, MAX(n, 1));
-    for (int r = 0; r < n; r++)
-        region[r] = region_info(&subject, fl_drawing_region(drawing, r));
-    FlRegionList *list = g_new(FlRegionList, 1);
-    *list = (FlRegionList){fl_drawing_width(drawing), fl_drawing_height(drawing),
-                           fl_drawing_frames(drawing), n, region};
-    return list;
-}
-
-void fl_region_list_free(FlRegionList *list)
-{
-    for (int r = 0; list && r < list->n_regions; r++) {
-        FlRegionInfo *info = list->region[r];
-        g_free(info->name);
-        g_free(info->paint);
-        g_free(info->layer);
-        g_free(info->section);
-        g_free(info);
-    }
-    if (list)
-        g_free((void *)list->region);
-    g_free(list);
+           : listing == FL_LISTING_JSON ? json_text(subject.drawing, list)
+                                        : table(list);
 }
 
 /* ---- maps --------------------------------------------------------------------------------- */

@@ -1,5 +1,6 @@
 #include "inspect/report.h"
 
+#include "base/json.h"
 #include "inspect/exemplar_use.h"
 #include "inspect/flicker.h"
 #include "inspect/followed_point.h"
@@ -158,194 +159,171 @@ bool fl_report_guides(FlReport *report, int p, const FlPaintedRegion *painted, i
 
 /* ---- a frame -------------------------------------------------------------------------------- */
 
-static bool write_scaled(FlReport *report, const FlPicture *whole, bool opaque, GError **error)
+static bool write_scaled(const FlReport *report, GString *json, const char *name,
+                         const FlPicture *whole, bool opaque, GError **error)
 {
     g_autoptr(FlPicture) small = fl_picture_resize(whole, report->width, report->height, error);
-    return small && fl_script_picture(report->out, small, opaque, error);
+    return small && fl_script_picture(json, name, small, opaque, error);
 }
 
-static bool write_pictures(FlReport *report, const FlComposite *composite, GError **error)
+static bool write_pictures(const FlReport *report, GString *json, const FlComposite *composite,
+                           GError **error)
 {
-    FILE *out = report->out;
     const FlShapes *shapes = report->shapes;
     const FlPicture after = {shapes->page_width, shapes->page_height, composite->rgba};
     g_autoptr(FlPicture) drawn = fl_picture_new(shapes->width, shapes->height, error);
-    if (!drawn)
-        return false;
-    fputs(",after:", out);
-    if (!write_scaled(report, &after, report->background->opaque, error))
+    if (!drawn || !write_scaled(report, json, "after", &after, report->background->opaque, error))
         return false;
     fl_draw_list_flat(composite->draws, drawn->width, drawn->height, drawn->rgba);
-    fputs(",before:", out);
-    if (!write_scaled(report, drawn, false, error))
+    if (!write_scaled(report, json, "before", drawn, false, error))
         return false;
     fl_draw_list_map(shapes->drawing, composite->draws, drawn->rgba);
-    fputs(",map:", out);
-    return write_scaled(report, drawn, false, error);
+    return write_scaled(report, json, "map", drawn, false, error);
 }
 
 /* [energy, change, seconds] of each painter. */
-static void write_painters(FlReport *report, const FlReportFrame *frame)
+static void write_painters(FlReport *report, GString *json, const FlReportFrame *frame)
 {
-    FILE *out = report->out;
-    fputs(",painters:[", out);
+    fl_json_begin(json, "painters", '[');
     for (int p = 0; p < report->shapes->n_painted; p++) {
         const FlPaintedRegion *painted = frame->painted[p];
         const bool searched = painted->stats.n_levels > 0 && painted->stats.level[0].pixels > 0;
-        fputs(p > 0 ? ",[" : "[", out);
-        fl_script_number(out, searched ? painted->stats.level[0].energy : NAN);
-        fputc(',', out);
         const bool held = frame->frame % painted->settings->hold != 0 ||
                           fl_drawing_shown(report->shapes->drawing, frame->frame) != frame->frame;
-        fl_script_number(out, held ? 0 : report->flicker[p].change);
-        fputc(',', out);
-        fl_script_number(out, held ? 0 : painted->seconds);
-        report->painter_seconds[p] += held ? 0 : painted->seconds;
-        fputc(']', out);
+        const double seconds = held ? 0 : painted->seconds;
+        fl_json_begin(json, NULL, '[');
+        fl_json_number(json, NULL, painted->stats.level[0].energy, searched);
+        fl_json_number(json, NULL, held ? 0 : report->flicker[p].change, true);
+        fl_json_number(json, NULL, seconds, true);
+        g_string_append_c(json, ']');
+        report->painter_seconds[p] += seconds;
     }
-    fputc(']', out);
+    g_string_append_c(json, ']');
 }
 
 /* [x, y, turn, found] of each painter's point, or null. In a frame without pictures the points only
  * move; `found` is kept for the next picture. */
-static void write_points(FlReport *report, bool pictures)
+static void write_points(FlReport *report, GString *json, bool pictures)
 {
-    FILE *out = report->out;
-    fputs(",points:[", out);
+    fl_json_begin(json, "points", '[');
     for (int p = 0; p < report->shapes->n_painted; p++) {
         FlFollowedPoint *point = &report->point[p];
         const float values[] = {point->x, point->y, point->turn, point->found};
-        fputs(p > 0 ? "," : "", out);
-        for (size_t k = 0; k < G_N_ELEMENTS(values) && point->here; k++) {
-            fputc(k > 0 ? ',' : '[', out);
-            fl_script_number(out, (double)values[k]);
+        if (!point->here) {
+            fl_json_text(json, NULL, NULL);
+            continue;
         }
-        fputs(point->here ? "]" : "null", out);
+        fl_json_begin(json, NULL, '[');
+        for (size_t k = 0; k < G_N_ELEMENTS(values); k++)
+            fl_json_number(json, NULL, (double)values[k], true);
+        g_string_append_c(json, ']');
         point->found &= !pictures;
     }
-    fputc(']', out);
+    g_string_append_c(json, ']');
 }
 
-static void write_seconds(FlReport *report, const FlReportFrame *frame)
+static void write_seconds(FlReport *report, GString *json, const FlReportFrame *frame)
 {
     const double seconds[] = {frame->paint_s, frame->compose_s, frame->write_s};
-    fputs(",seconds:[", report->out);
+    fl_json_begin(json, "seconds", '[');
     for (size_t k = 0; k < G_N_ELEMENTS(seconds); k++) {
         report->seconds[k] += seconds[k];
-        fputs(k > 0 ? "," : "", report->out);
-        fl_script_number(report->out, seconds[k]);
+        fl_json_number(json, NULL, seconds[k], true);
     }
-    fputc(']', report->out);
+    g_string_append_c(json, ']');
 }
 
 bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **error)
 {
     if (!report)
         return true;
-    FILE *out = report->out;
-    fprintf(out, "<script>frames.push({number:%d",
-            fl_drawing_number(report->shapes->drawing, frame->frame));
-    write_seconds(report, frame);
-    write_painters(report, frame);
+    g_autoptr(GString) json = g_string_new("{");
     const bool pictures = frame->frame % report->every == 0;
-    write_points(report, pictures);
-    if (pictures && !write_pictures(report, frame->composite, error))
+    fl_json_number(json, "number", fl_drawing_number(report->shapes->drawing, frame->frame), true);
+    write_seconds(report, json, frame);
+    write_painters(report, json, frame);
+    write_points(report, json, pictures);
+    if (pictures && !write_pictures(report, json, frame->composite, error))
         return false;
     if (fl_report_wants_view(report, frame->frame)) {
-        fputs(",guides:", out);
-        if (!fl_guide_view_write(&report->view, out, error))
+        if (!fl_guide_view_write(&report->view, json, error))
             return false;
         fl_guide_view_reset(&report->view);
     }
-    fputs("});</script>\n", out);
+    fl_script_write(report->out, "frames.push(", json, "});");
     return true;
 }
 
 /* ---- the whole ------------------------------------------------------------------------------ */
 
-static void write_region(const FlReport *report, int r)
+static void write_colour(GString *json, const char *name, const uint8_t rgb[3])
 {
-    FILE *out = report->out;
+    g_autofree char *text = g_strdup_printf("#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+    fl_json_text(json, name, text);
+}
+
+static void write_region(const FlReport *report, GString *json, int r)
+{
     const FlShapes *shapes = report->shapes;
     const FlRegion *region = fl_drawing_region(shapes->drawing, r);
     const int p = shapes->painted_of[r];
     uint8_t rgb[3];
     fl_region_colour(shapes->drawing, r, rgb);
-    fputs("{name:", out);
-    fl_script_string(out, region->name);
-    fputs(",label:", out);
-    fl_script_string(out, region->label);
-    fputs(",paint:", out);
-    fl_script_string(out, region->paint);
-    fputs(",colour:", out);
-    fl_script_colour(out, rgb);
-    fputs(",area:", out);
-    fl_script_number(out, region->area_px);
-    fprintf(out, ",present:%d,painter:%d", region->n_present, p);
+    fl_json_begin(json, NULL, '{');
+    fl_json_text(json, "name", region->name);
+    fl_json_text(json, "label", region->label);
+    fl_json_text(json, "paint", region->paint);
+    write_colour(json, "colour", rgb);
+    fl_json_number(json, "area", region->area_px, true);
+    fl_json_number(json, "present", region->n_present, true);
+    fl_json_number(json, "painter", p, true);
     if (p >= 0) {
-        g_autofree char *style = g_path_get_basename(shapes->painted[p].style->path);
-        fputs(",style:", out);
-        fl_script_string(out, style);
-        fputs(",change:", out);
-        fl_script_number(out, fl_flicker_of_exemplar(shapes->painted[p].style->exemplar));
-        fputs(",seconds:", out);
-        fl_script_number(out, report->painter_seconds[p]);
+        const FlStyleInstance *style = shapes->painted[p].style;
+        g_autofree char *name = g_path_get_basename(style->path);
+        fl_json_text(json, "style", name);
+        fl_json_number(json, "change", fl_flicker_of_exemplar(style->exemplar), true);
+        fl_json_number(json, "seconds", report->painter_seconds[p], true);
     }
-    fputs("}", out);
+    g_string_append_c(json, '}');
 }
 
-static void write_regions(const FlReport *report)
+static void write_size(GString *json, const char *name, int width, int height)
 {
-    fputs("regions:[", report->out);
-    for (int r = 0; r < fl_drawing_regions(report->shapes->drawing); r++) {
-        fputs(r > 0 ? "," : "", report->out);
-        write_region(report, r);
-    }
-    fputs("]", report->out);
-}
-
-static bool write_uses(const FlReport *report, GError **error)
-{
-    FILE *out = report->out;
-    const char *comma = "";
-    fputs(",uses:[", out);
-    for (int k = 0; k < report->shapes->n_painted; k++) {
-        if (report->use[k].total == 0)
-            continue;
-        fputs(comma, out);
-        if (!fl_exemplar_use_write(&report->use[k], out, error))
-            return false;
-        comma = ",";
-    }
-    fputs("]", out);
-    return true;
+    fl_json_begin(json, name, '[');
+    fl_json_number(json, NULL, width, true);
+    fl_json_number(json, NULL, height, true);
+    g_string_append_c(json, ']');
 }
 
 static bool write_film(const FlReport *report, GError **error)
 {
-    FILE *out = report->out;
     const FlShapes *shapes = report->shapes;
     const double fps = report->outputs->fps;
-    fputs("<script>film={name:", out);
-    fl_script_string(out, fl_drawing_name(shapes->drawing));
-    fputs(",output:", out);
-    fl_script_string(out, report->outputs->output);
-    fputs(",version:", out);
-    fl_script_string(out, fl_version());
-    fputs(",paper:", out);
-    fl_script_colour(out, report->background->flat);
-    fprintf(out,
-            ",width:%d,height:%d,drawn:%d,shown:[%d,%d],every:%d,measured:true,"
-            "transparent:%s,fps:",
-            shapes->page_width, shapes->page_height, shapes->width, report->width, report->height,
-            report->every, report->background->none ? "true" : "false");
-    fl_script_number(out, fps > 0 ? fps : 24);
-    fputs(",peak:", out);
-    fl_script_number(out, fl_peak_mib());
-    fputs(",", out);
-    write_regions(report);
-    const bool done = write_uses(report, error);
-    fputs("};</script>\n", out);
+    bool done = true;
+    g_autoptr(GString) json = g_string_new("{");
+    fl_json_text(json, "name", fl_drawing_name(shapes->drawing));
+    fl_json_text(json, "output", report->outputs->output);
+    fl_json_text(json, "version", fl_version());
+    write_colour(json, "paper", report->background->flat);
+    fl_json_number(json, "width", shapes->page_width, true);
+    fl_json_number(json, "height", shapes->page_height, true);
+    fl_json_number(json, "drawn", shapes->width, true);
+    write_size(json, "shown", report->width, report->height);
+    fl_json_number(json, "every", report->every, true);
+    fl_json_bool(json, "measured", true);
+    fl_json_bool(json, "transparent", report->background->none);
+    fl_json_number(json, "fps", fps > 0 ? fps : 24, true);
+    fl_json_number(json, "peak", fl_peak_mib(), true);
+    fl_json_begin(json, "regions", '[');
+    for (int r = 0; r < fl_drawing_regions(shapes->drawing); r++)
+        write_region(report, json, r);
+    g_string_append_c(json, ']');
+    fl_json_begin(json, "uses", '[');
+    for (int k = 0; k < shapes->n_painted && done; k++)
+        if (report->use[k].total > 0)
+            done = fl_exemplar_use_write(&report->use[k], json, error);
+    g_string_append_c(json, ']');
+    fl_script_write(report->out, "film=", json, "};");
     return done;
 }
 

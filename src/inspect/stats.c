@@ -1,5 +1,6 @@
 #include "inspect/stats.h"
 
+#include "base/json.h"
 #include <sys/resource.h>
 
 bool fl_stats_init(FlStats *stats, const char *path, bool overwrite, GError **error)
@@ -11,38 +12,39 @@ bool fl_stats_init(FlStats *stats, const char *path, bool overwrite, GError **er
     return stats->open;
 }
 
-/* A double with a point, whatever the locale. */
-static const char *number(char buffer[32], double value)
+/* Begins a line about a frame, and about a region or NULL. */
+static GString *new_line(int frame_number, const char *region)
 {
-    return g_ascii_formatd(buffer, 32, "%.6g", value);
-}
-
-static void pair(FILE *out, const char *name, double value)
-{
-    char buffer[32];
-    fprintf(out, ", \"%s\": %s", name, number(buffer, value));
+    GString *line = g_string_new("{");
+    fl_json_number(line, "frame", frame_number, true);
+    if (region)
+        fl_json_text(line, "region", region);
+    return line;
 }
 
 static void level_line(FILE *out, const FlPaintedRegion *painted, int frame_number, int level)
 {
     const FlLevelStats *s = &painted->stats.level[level];
-    fprintf(out,
-            "{\"frame\": %d, \"region\": \"%s\", \"level\": %d, \"width\": %d, \"height\": %d, "
-            "\"pixels\": %d, \"rounds\": %d",
-            frame_number, painted->name, level, s->width, s->height, s->pixels, s->rounds);
-    pair(out, "energy_start", s->energy_start);
-    pair(out, "energy", s->energy);
-    pair(out, "texture", s->texture);
-    pair(out, "bound", s->bound);
-    pair(out, "ext", s->ext);
-    pair(out, "direction", s->direction);
-    pair(out, "temporal", s->temporal);
-    pair(out, "uniformity", s->uniformity);
-    pair(out, "coherence", s->coherence);
-    pair(out, "tried_per_pixel", s->pixels ? (double)s->counts.tried / s->pixels : 0);
-    pair(out, "accepted_per_pixel", s->pixels ? (double)s->counts.accepted / s->pixels : 0);
-    pair(out, "seconds", s->seconds);
-    fputs("}\n", out);
+    g_autoptr(GString) line = new_line(frame_number, painted->name);
+    fl_json_number(line, "level", level, true);
+    fl_json_number(line, "width", s->width, true);
+    fl_json_number(line, "height", s->height, true);
+    fl_json_number(line, "pixels", s->pixels, true);
+    fl_json_number(line, "rounds", s->rounds, true);
+    fl_json_number(line, "energy_start", s->energy_start, true);
+    fl_json_number(line, "energy", s->energy, true);
+    fl_json_number(line, "texture", s->texture, true);
+    fl_json_number(line, "bound", s->bound, true);
+    fl_json_number(line, "ext", s->ext, true);
+    fl_json_number(line, "direction", s->direction, true);
+    fl_json_number(line, "temporal", s->temporal, true);
+    fl_json_number(line, "uniformity", s->uniformity, true);
+    fl_json_number(line, "coherence", s->coherence, true);
+    fl_json_number(line, "tried_per_pixel", (double)s->counts.tried / MAX(s->pixels, 1), true);
+    fl_json_number(line, "accepted_per_pixel", (double)s->counts.accepted / MAX(s->pixels, 1),
+                   true);
+    fl_json_number(line, "seconds", s->seconds, true);
+    fprintf(out, "%s}\n", line->str);
 }
 
 double fl_peak_mib(void)
@@ -61,17 +63,17 @@ void fl_stats_frame(FlStats *stats, const FlPaintedRegion *const *painted, int n
     FILE *out = stats->file.stream;
     for (int p = 0; p < n; p++) {
         if (painted[p]->from == FL_FROM_CACHE)
-            fprintf(out, "{\"frame\": %d, \"region\": \"%s\", \"taken\": true}\n", frame_number,
+            fprintf(out, "{\"frame\":%d,\"region\":\"%s\",\"taken\":true}\n", frame_number,
                     painted[p]->name);
         for (int l = painted[p]->stats.n_levels - 1; l >= 0; l--)
             level_line(out, painted[p], frame_number, l);
     }
-    fprintf(out, "{\"frame\": %d", frame_number);
-    pair(out, "paint_seconds", paint_s);
-    pair(out, "compose_seconds", compose_s);
-    pair(out, "write_seconds", write_s);
-    pair(out, "peak_mib", fl_peak_mib());
-    fputs("}\n", out);
+    g_autoptr(GString) line = new_line(frame_number, NULL);
+    fl_json_number(line, "paint_seconds", paint_s, true);
+    fl_json_number(line, "compose_seconds", compose_s, true);
+    fl_json_number(line, "write_seconds", write_s, true);
+    fl_json_number(line, "peak_mib", fl_peak_mib(), true);
+    fprintf(out, "%s}\n", line->str);
 }
 
 char *fl_stats_summary(const FlStats *stats, int n_frames)

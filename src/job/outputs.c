@@ -133,10 +133,9 @@ bool fl_write_provenance(const FlOutputs *out, const FlShapes *shapes, const FlF
     g_autoptr(GString) json = g_string_new("{\"facts\":[");
     for (guint k = 0; k < facts->list->len; k++) {
         const FlFact *fact = &g_array_index(facts->list, FlFact, k);
-        g_string_append(json, k ? ",[" : "[");
-        fl_json_string(json, fact->name);
-        g_string_append_c(json, ',');
-        fl_json_string(json, fact->value);
+        fl_json_begin(json, NULL, '[');
+        fl_json_text(json, NULL, fact->name);
+        fl_json_text(json, NULL, fact->value);
         g_string_append_c(json, ']');
     }
     g_string_append(json, "],\"sha256\":{");
