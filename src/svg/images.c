@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BLOCK 4096    // bytes; the first usually has the size
-#define ENLARGED 1000 // px, of the longer side of a drawing in a drawing
+#define BLOCK 4096 // bytes; the first usually has the size
+#define ENLARGED 4 // pixels of a drawing in a drawing for one of the drawing, along a side
 
 typedef struct Check {
     const char *path;
@@ -126,8 +126,8 @@ static char *unescape(const char *text)
     return g_string_free(out, FALSE);
 }
 
-/** Gives a drawing many pixels, which librsvg makes before it scales it to its place. */
-static void enlarge(xmlNode *root)
+/** Gives a drawing many pixels, which librsvg makes before it scales it to its place in a node. */
+static void enlarge(xmlNode *root, const xmlNode *node)
 {
     const double sides[2] = {side_of(root, "width"), side_of(root, "height")};
     double box[4] = {0, 0, sides[0], sides[1]};
@@ -135,7 +135,8 @@ static void enlarge(xmlNode *root)
     const double *size = sides[0] > 0 && sides[1] > 0 ? sides : box + 2;
     if (!(size[0] > 0 && size[1] > 0))
         return; // librsvg decides
-    const double scale = fmax(ENLARGED / fmax(size[0], size[1]), 1);
+    const double place = fmax(side_of(node, "width"), side_of(node, "height"));
+    const double scale = place > 0 ? ENLARGED * place / fmax(size[0], size[1]) : 1;
     g_autofree char *width = fl_css_number_text(size[0]), *height = fl_css_number_text(size[1]);
     g_autofree char *whole = g_strdup_printf("0 0 %s %s", width, height);
     if (!has_box)
@@ -154,7 +155,7 @@ static void embed_drawing(const Check *check, xmlNode *node, xmlAttr *a, const c
         warn(check, node, href, "cannot be read and is left out");
         return;
     }
-    enlarge(xmlDocGetRootElement(doc));
+    enlarge(xmlDocGetRootElement(doc), node);
     size_t n = 0;
     g_autofree char *plain = fl_document_text(doc, &n);
     g_autofree char *coded = g_base64_encode((guchar *)plain, n);
