@@ -9,7 +9,7 @@ static char *describe(FlSvg *svg)
     const GArray *leaves = fl_svg_leaves(svg)->leaf;
     for (guint i = 0; i < leaves->len; i++) {
         FlPainted parts[FL_MOST_PARTS];
-        const int n = fl_svg_leaf_paints(svg, &g_array_index(leaves, FlLeaf, i), parts);
+        const int n = fl_svg_leaf_paints(svg, &g_array_index(leaves, FlLeaf, i), (FlPageSize){1, 1}, parts);
         for (int p = 0; p < n; p++) {
             g_string_append_printf(text, "%s%s %s@%d", text->len ? " | " : "",
                                    parts[p].stroke ? "stroke" : "fill", parts[p].paint.key,

@@ -25,9 +25,15 @@ static FlColumns span_of(const uint8_t *row, int width)
 FlRect fl_rect_within(const uint8_t *plane, int width, FlRect part)
 {
     int left = part.width, right = -1, top = part.height, bottom = -1;
+    const int block = part.width == width ? 16 : 1; // rows that are looked at together
     for (int y = 0; y < part.height; y++) {
         const uint8_t *row = plane + (size_t)(part.y + y) * width + part.x;
-        if (fl_is_blank(row, (size_t)part.width)) // as most rows of most planes
+        const int rows = y % block == 0 ? MIN(block, part.height - y) : 1;
+        if (fl_is_blank(row, (size_t)rows * part.width)) { // as most of most planes
+            y += rows - 1;
+            continue;
+        }
+        if (fl_is_blank(row, (size_t)part.width))
             continue;
         const FlColumns span = span_of(row, part.width);
         left = MIN(left, span.first), right = MAX(right, span.last - 1);

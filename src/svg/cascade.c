@@ -616,17 +616,12 @@ static void enter_viewport(Style *style, const xmlNode *node)
         fl_css_number((const char *)height, u, u->height, &u->height);
 }
 
-/** The value of `color` that an element sets, to be freed; NULL: it inherits its own. */
-static char *own_colour(Cascade *c, const xmlNode *node, const GArray *values, const Style *style)
+/** The value that an element sets, to be freed; NULL: it inherits its own. */
+static char *own_value(Cascade *c, const xmlNode *node, GArray *values, const char *name,
+                       const Style *style)
 {
-    char *written = fl_property(node, "color");
-    for (guint i = 0; i < values->len; i++) {
-        const Value *v = &g_array_index(values, Value, i);
-        if (v->property && strcmp(v->name, "color") == 0) {
-            g_free(written);
-            written = compute(c, v->name, v->property, v->text, style);
-        }
-    }
+    const Value *v = find_value(values, name);
+    char *written = v ? compute(c, v->name, v->property, v->text, style) : fl_property(node, name);
     if (written && (strcmp(written, "inherit") == 0 || strcmp(written, "currentcolor") == 0))
         g_clear_pointer(&written, g_free);
     return written;
@@ -646,17 +641,10 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
         enter_viewport(&style, node);
     if (animate(c, node, values, &style, owned))
         set_variables(&style, values);
-    g_autofree char *font_size = fl_property(node, "font-size");
-    for (guint i = 0; i < values->len; i++) {
-        const Value *v = &g_array_index(values, Value, i);
-        if (v->property && strcmp(v->name, "font-size") == 0) {
-            g_free(font_size);
-            font_size = compute(c, v->name, v->property, v->text, &style);
-        }
-    }
+    g_autofree char *font_size = own_value(c, node, values, "font-size", &style);
     if (font_size)
         set_font_size(&style, font_size, fl_is_root(node));
-    g_autofree char *colour = own_colour(c, node, values, &style);
+    g_autofree char *colour = own_value(c, node, values, "color", &style);
     style.colour = colour ? colour : style.colour;
     GString *text = g_string_new(NULL);
     compute_attributes(c, node, &style);

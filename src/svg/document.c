@@ -69,10 +69,19 @@ const xmlNode *fl_shown_by_use(const xmlNode *use, GHashTable *ids)
 
 char *fl_property(const xmlNode *node, const char *name)
 {
-    g_autoptr(xmlChar) style = fl_attribute(node, "style");
+    const xmlAttr *own = NULL, *style = NULL; // looked for at once, since most elements have none
+    for (const xmlAttr *a = node->properties; a; a = a->next)
+        if (!a->ns && strcmp((const char *)a->name, name) == 0)
+            own = a;
+        else if (!a->ns && strcmp((const char *)a->name, "style") == 0)
+            style = a;
+    if (!own && !style)
+        return NULL;
+    g_autoptr(xmlChar) declared =
+        style ? xmlNodeListGetString(node->doc, style->children, 1) : NULL;
     char *value = NULL;
-    if (style && strstr((const char *)style, name)) {
-        g_auto(GStrv) parts = g_strsplit((const char *)style, ";", -1);
+    if (declared && strstr((const char *)declared, name)) {
+        g_auto(GStrv) parts = g_strsplit((const char *)declared, ";", -1);
         for (int i = 0; parts[i]; i++) {
             char *colon = strchr(parts[i], ':');
             if (!colon)
@@ -86,8 +95,8 @@ char *fl_property(const xmlNode *node, const char *name)
     }
     if (value)
         return value;
-    g_autoptr(xmlChar) attribute = fl_attribute(node, name);
-    return attribute ? g_strstrip(g_strdup((const char *)attribute)) : NULL;
+    g_autoptr(xmlChar) attribute = own ? xmlNodeListGetString(node->doc, own->children, 1) : NULL;
+    return own ? g_strstrip(g_strdup(attribute ? (const char *)attribute : "")) : NULL;
 }
 
 bool fl_declare(xmlNode *node, const char *declarations)

@@ -5,7 +5,7 @@
 #include <string.h>
 
 typedef struct Reader {
-    FlInheritance inheritance;
+    FlInheritance *inheritance;
     GArray *subpath, *cubic; // FlSubpath, FlCubic
 } Reader;
 
@@ -17,7 +17,7 @@ static FlOutlineKind draw_shape(const Reader *reader, const xmlNode *node, const
 {
     const double w = s->width, h = s->height, mean = sqrt((w * w + h * h) / 2);
 #define LENGTH(name, whole, initial)                                                               \
-    fl_length_in(&reader->inheritance, node, name, whole, initial, broken)
+    fl_length_in(reader->inheritance, node, name, whole, initial, broken)
     if (fl_is(node, "circle")) {
         const double r = LENGTH("r", mean, 0);
         fl_pen_ellipse(pen, LENGTH("cx", w, 0), LENGTH("cy", h, 0), r, r);
@@ -99,7 +99,7 @@ static FlGeometry read_leaf(Reader *reader, const FlLeaf *leaf, const xmlNode *n
     FlGeometry g;
     memset(&g, 0, sizeof g); // clears the padding, since the struct is stored as bytes
     FlPen pen = {.subpath = reader->subpath, .cubic = reader->cubic};
-    const FlInherited s = fl_inherited_by(&reader->inheritance, node);
+    const FlInherited s = fl_inherited_by(reader->inheritance, node);
     bool broken = s.broken;
     const guint first = reader->cubic->len;
     g.first_subpath = (int32_t)reader->subpath->len;
@@ -141,7 +141,8 @@ FlOutlines *fl_outlines_of_shape(const xmlNode *node, double dpi, FlPageSize vie
 {
     g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
     g_autoptr(GArray) cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic));
-    const Reader reader = {.inheritance = {.dpi = dpi}};
+    FlInheritance inheritance = {.dpi = dpi};
+    const Reader reader = {.inheritance = &inheritance};
     const FlInherited inherited = {.width = viewport.width, .height = viewport.height};
     FlPen pen = {.subpath = subpath, .cubic = cubic};
     bool broken = false;
@@ -153,13 +154,12 @@ FlOutlines *fl_outlines_of_shape(const xmlNode *node, double dpi, FlPageSize vie
     return outlines;
 }
 
-FlOutlines *fl_outlines_new(xmlDoc *doc, const FlLeaves *list, double dpi, FlPageSize page)
+FlOutlines *fl_outlines_new(FlInheritance *inheritance, const FlLeaves *list, GHashTable *ids)
 {
     const GArray *leaves = list->leaf;
-    g_autoptr(GHashTable) ids = fl_document_ids(doc);
     g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
     g_autoptr(GArray) cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic));
-    Reader reader = {fl_inheritance_of(dpi, page), subpath, cubic};
+    Reader reader = {inheritance, subpath, cubic};
     g_autofree FlGeometry *read = g_new0(FlGeometry, leaves->len + 1);
     for (guint i = 0; i < leaves->len; i++) {
         const FlLeaf *leaf = &g_array_index(leaves, FlLeaf, i);
@@ -170,7 +170,6 @@ FlOutlines *fl_outlines_new(xmlDoc *doc, const FlLeaves *list, double dpi, FlPag
     FlOutlines *outlines = outlines_of((int)leaves->len, (int)subpath->len, (int)cubic->len);
     memcpy(outlines->leaf, read, leaves->len * sizeof *read);
     take_curves(outlines, subpath, cubic);
-    fl_inheritance_clear(&reader.inheritance);
     return outlines;
 }
 

@@ -175,8 +175,7 @@ FlInherited fl_inherited_by(FlInheritance *inheritance, const xmlNode *node)
         return *known;
     const FlInherited around = fl_inherited_by(inheritance, node->parent);
     const FlInherited s = fl_inherited_from(inheritance, node, &around);
-    if (node->children)
-        g_hash_table_insert(inheritance->known, (gpointer)node, g_memdup2(&s, sizeof s));
+    g_hash_table_insert(inheritance->known, (gpointer)node, g_memdup2(&s, sizeof s));
     return s;
 }
 

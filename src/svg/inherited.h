@@ -31,7 +31,7 @@ typedef struct FlInherited {
 typedef struct FlInheritance {
     double dpi;
     FlPageSize page;
-    GHashTable *known; // xmlNode -> FlInherited, of elements with children
+    GHashTable *known; // xmlNode -> FlInherited
     GStringChunk *text;
 } FlInheritance;
 

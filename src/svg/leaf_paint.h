@@ -38,7 +38,7 @@ typedef struct FlPainted {
     FlPart part;
     bool stroke;            // the part consists of strokes only
     FlBlendMode blend_mode; // of the whole part; OVER if it has several modes
-    float width;            // of its widest stroke, share of the page's longer side; 0: no stroke
+    float width;            // of its widest stroke, px of the page; 0: no stroke
     FlSvgPaint paint;
 } FlPainted;
 

@@ -23,7 +23,7 @@ struct FlSvg {
     size_t original_bytes;
     RsvgHandle *handle; // of the normalised document
     RsvgHandle *before; // of the original, made when first needed
-    GHashTable *ids;    // of the document; made when paints are first read, as are the next two
+    GHashTable *ids;    // of the document; made when it is first read, as are the next two
     GHashTable *others; // real path of another file -> its elements, in svg_paint.c
     FlInheritance inheritance;
     int n_nameless;       // groups without an id
@@ -43,6 +43,9 @@ RsvgHandle *fl_svg_handle(FlSvg *svg, FlPart part, bool bare, GError **error);
 
 /** Likewise the handle whose layers are the groups of that depth, see fl_group_masks_flood(). */
 RsvgHandle *fl_svg_mask_handle(FlSvg *svg, int depth, GError **error);
+
+/** What its elements inherit on a page of that size; svg->ids are there then. It belongs to svg. */
+FlInheritance *fl_svg_inheritance(FlSvg *svg, FlPageSize page);
 
 /** Sets FL_ERROR_INPUT in plain words. */
 void fl_svg_set_error(const FlSvg *svg, const GError *reason, GError **error);

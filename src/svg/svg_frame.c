@@ -158,9 +158,22 @@ xmlDoc *fl_svg_document(const FlSvg *svg)
     return svg->doc;
 }
 
-FlOutlines *fl_svg_outlines(const FlSvg *svg, FlPageSize page)
+FlInheritance *fl_svg_inheritance(FlSvg *svg, FlPageSize page)
 {
-    return fl_outlines_new(svg->doc, svg->leaves, svg->dpi, page);
+    FlInheritance *known = &svg->inheritance;
+    if (!svg->ids)
+        svg->ids = fl_document_ids(svg->doc);
+    if (!known->known || known->page.width != page.width || known->page.height != page.height) {
+        fl_inheritance_clear(known);
+        *known = fl_inheritance_of(svg->dpi, page);
+    }
+    return known;
+}
+
+FlOutlines *fl_svg_outlines(FlSvg *svg, FlPageSize page)
+{
+    FlInheritance *inheritance = fl_svg_inheritance(svg, page);
+    return fl_outlines_new(inheritance, svg->leaves, svg->ids);
 }
 
 /* Reads a number at *text, after `sign` unless that is 0, and moves *text behind the number. */

@@ -58,14 +58,15 @@ const FlLeaves *fl_svg_leaves(const FlSvg *svg);
 xmlDoc *fl_svg_document(const FlSvg *svg);
 
 /** The outlines of its leaves; to be freed with fl_outlines_free(). */
-FlOutlines *fl_svg_outlines(const FlSvg *svg, FlPageSize page);
+FlOutlines *fl_svg_outlines(FlSvg *svg, FlPageSize page);
 
 /**
  * The computed paints of a leaf. A leaf whose fill and stroke have the same opaque paint is one
  * part, and so is one with a blend mode.
  * Returns: the number of parts, bottom up, which need not cover anything; 0 if it has no paint.
  */
-int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS]);
+int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPageSize page,
+                       FlPainted parts[FL_MOST_PARTS]);
 
 /**
  * Draws a part of a leaf at its place in the picture, with its clip, mask and groups. The drawing

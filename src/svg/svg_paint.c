@@ -26,7 +26,7 @@ typedef struct Around {
 typedef struct Op {
     bool stroke;
     FlBlendMode blend_mode;
-    double width; // of a stroke, share of the page's longer side; else 0
+    double width; // of a stroke, px of the page; else 0
     FlSvgPaint paint;
 } Op;
 
@@ -503,23 +503,22 @@ static int take_apart(const GArray *ops, bool whole, FlPainted parts[FL_MOST_PAR
     return 2;
 }
 
-int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS])
+int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPageSize page,
+                       FlPainted parts[FL_MOST_PARTS])
 {
     if (leaf->all) {
         parts[0] = (FlPainted){.part = FL_PART_WHOLE,
                                .paint = {FL_PAINT_MIXED, {0}, 255, 255, g_strdup("mixed")}};
         return 1;
     }
-    if (!svg->ids) {
-        svg->ids = fl_document_ids(svg->doc);
+    FlInheritance *inheritance = fl_svg_inheritance(svg, page);
+    if (!svg->others)
         svg->others = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, other_free);
-        svg->inheritance = fl_inheritance_of(svg->dpi, (FlPageSize){1, 1});
-    }
     const xmlNode *node = g_hash_table_lookup(svg->ids, leaf->id);
     g_autoptr(GArray) ops = g_array_new(FALSE, FALSE, sizeof(Op));
     Reader r = {svg, ops, MOST_ELEMENTS};
     g_array_set_clear_func(ops, op_clear);
-    const FlInherited s = fl_inherited_by(&svg->inheritance, node);
+    const FlInherited s = fl_inherited_by(inheritance, node);
     const Around around = around_of(node);
     add_element(&r, node, &s, &around);
     return take_apart(ops, leaf->whole, parts);

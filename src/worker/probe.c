@@ -148,11 +148,11 @@ static void relate_parts(GArray *probes, guint first)
 }
 
 /** See FlSurveyPart.width. */
-static float width_of(const FlFrameProbe *f, const FlLeaf *leaf, const FlPainted *p)
+static float width_of(const FlLeaf *leaf, const FlPainted *p)
 {
     if (leaf->whole || leaf->text || (p->width > 0 && !p->stroke))
         return -1;
-    return p->stroke ? p->width * (float)(MAX(f->page.width, f->page.height) * f->factor) : 0;
+    return p->stroke ? p->width : 0;
 }
 
 /** The pose of a leaf or unit; of what has no outline the middle alone. */
@@ -211,7 +211,8 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, bool stac
 {
     const guint first = f->probes->len;
     FlPainted parts[FL_MOST_PARTS];
-    const int n = fl_svg_leaf_paints(f->svg, leaf, parts);
+    const FlPageSize page = whole_page(f);
+    const int n = fl_svg_leaf_paints(f->svg, leaf, page, parts);
     bool good = true;
     const FlPose pose = n > 0 ? pose_of(f, leaf, index) : (FlPose){0};
     for (int i = 0; i < n; i++) {
@@ -223,8 +224,8 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, bool stac
         found->leaf = index;
         found->part = p->part;
         found->stroke = p->stroke;
-        found->width = width_of(f, leaf, p);
-        found->thick = p->stroke && p->width >= THICK;
+        found->width = width_of(leaf, p);
+        found->thick = p->stroke && p->width >= THICK * MAX(page.width, page.height);
         found->kind = p->paint.kind;
         memcpy(found->rgb, p->paint.rgb, 3);
         found->alpha = p->paint.alpha;

@@ -23,6 +23,8 @@ static inline uint32_t fl_blend(uint32_t below, const uint8_t rgb[3], uint32_t o
 {
     const uint32_t rest = 255 - o;
     uint32_t out = 0;
+    if (rest == 0) // as nearly all pixels
+        return 0xff000000u | (uint32_t)rgb[0] << 16 | (uint32_t)rgb[1] << 8 | rgb[2];
     const uint32_t source[4] = {rgb[2] * o, rgb[1] * o, rgb[0] * o, 255 * o};
     for (int c = 0; c < 4; c++)
         out |= (source[c] + ((below >> (8 * c)) & 255) * rest + 127) / 255 << (8 * c);

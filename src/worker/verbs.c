@@ -32,7 +32,7 @@ static bool count(const FlRequest *r, GByteArray *out, GError **error)
 static void add_shape(GArray *shapes, FlSvg *svg, const FlLeaf *leaf, FlPageSize page)
 {
     FlPainted parts[FL_MOST_PARTS];
-    const int n = fl_svg_leaf_paints(svg, leaf, parts);
+    const int n = fl_svg_leaf_paints(svg, leaf, page, parts);
     const RsvgRectangle box = fl_svg_extents(svg, leaf, page);
     FlShape shape = {0, box.x, box.y, box.width, box.height};
     for (int k = 0; k < n; k++) {

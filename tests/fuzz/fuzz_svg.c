@@ -17,7 +17,7 @@ static void look_at(FlSvg *svg)
     for (guint l = 0; l < MIN(leaves->leaf->len, MOST_LEAVES); l++) {
         const FlLeaf *leaf = &g_array_index(leaves->leaf, FlLeaf, l);
         FlPainted parts[FL_MOST_PARTS];
-        const int n = fl_svg_leaf_paints(svg, leaf, parts);
+        const int n = fl_svg_leaf_paints(svg, leaf, (FlPageSize){1, 1}, parts);
         g_assert_cmpint(n, <=, FL_MOST_PARTS);
         if (n > 0)
             fl_svg_draw(svg, leaf, parts[0].part, cr, (FlPageSize){SIDE, SIDE}, NULL);
