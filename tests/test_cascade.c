@@ -141,6 +141,10 @@ static void the_strongest_declaration_wins(void)
         {"@media screen and (min-width: 50px){path{fill:#111111}}", "#111111"},
         {"@supports (fill: oklch(0 0 0)){path{fill:#111111}}", "#111111"},
         {"@supports not (fill: red){path{fill:#111111}}", ""},
+        {"@supports (display: nonsense){path{fill:#111111}}", ""},
+        {"@supports (display: GRID) and (position: sticky){path{fill:#111111}}", "#111111"},
+        {"@supports (stroke-width: banana){path{fill:#111111}}", ""},
+        {"|path{fill:#111111}", ""},
         {"/* path{fill:red} */path{fill:#111111}", "#111111"},
         {".x}path{fill:#111111}", ""},
         {"s|path{fill:#111111}", ""},
@@ -340,7 +344,7 @@ static void what_use_shows_has_the_variables_of_use(void)
 static char *embedded(const char *root)
 {
     g_autofree char *content =
-        g_strdup_printf("<image id='a' href='data:image/svg+xml,%s'/>", root);
+        g_strdup_printf("<image id='a' width='50' height='50' href='data:image/svg+xml,%s'/>", root);
     g_autofree char *href = computed(content, "a", "href", NULL);
     gsize bytes;
     g_assert_true(g_str_has_prefix(href, "data:image/svg+xml;base64,"));
@@ -351,8 +355,8 @@ static char *embedded(const char *root)
 static void images_keep_their_shape(void)
 {
     static const char *const roots[][2] = {
-        {"width='100%25' height='100%25' viewBox='0 0 20 10'", "width=\"1000\" height=\"500\""},
-        {"width='20' viewBox='0 0 20 10'", "width=\"1000\""},
+        {"width='100%25' height='100%25' viewBox='0 0 20 10'", "width=\"200\" height=\"100\""},
+        {"width='20' viewBox='0 0 20 10'", "width=\"200\""},
         {"width='2cm' height='20mm'", "viewBox=\"0 0 75.5905512 75.5905512\""},
         {"width='20'", "width=\"20\"/>"}};
     for (size_t i = 0; i < G_N_ELEMENTS(roots); i++) {
@@ -383,6 +387,9 @@ static void gaps_of_librsvg_are_filled(void)
     assert_value("<symbol id='a'/>", "overflow", "hidden");
     assert_value("<path id='a' d='M1 2M3 4' stroke-linecap='round'/>", "stroke-linecap", "butt");
     assert_value("<path id='a' d='M1 2z' stroke-linecap='round'/>", "stroke-linecap", "round");
+    assert_value("<g style='stroke-linecap:square'><path id='a' d='M1 2zM0 0h1'/></g>", "d",
+                 "M1 2zM0 0h1M1 2h.01");
+    assert_value("<path id='a' d='M 1 2 h 1.e1 v 4'/>", "d", "M 1 2 h");
     assert_value("<g style='dominant-baseline:middle'><text id='a'/></g>", "baseline-shift",
                  "-27%");
     assert_value("<text dominant-baseline='middle'><tspan id='a' dominant-baseline='auto'/></text>",

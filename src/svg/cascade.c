@@ -56,6 +56,12 @@ static void warn(Cascade *c, const char *name, const char *value, const char *wh
                         name, value ? ": " : "", value ? value : "", why);
 }
 
+static void warn_of_value(Cascade *c, const FlCssProperty *property, const char *value)
+{
+    warn(c, property->name, value,
+         property->kind == FL_CSS_ABSENT ? "cannot be drawn" : "is not a value of that property");
+}
+
 /* ---- declared values ------------------------------------------------------------------------- */
 
 /** The property that a name of WebKit stands for, or one that is a part of another. */
@@ -129,11 +135,11 @@ static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d)
         return;
     }
     if (property && !fl_css_is_valid(property, d->value)) {
-        warn(c, name, d->value, "is not a value of that property");
+        warn_of_value(c, property, d->value);
         return;
     }
     if (strcmp(name, "font") == 0 && strstr(d->value, "small-caps"))
-        warn(c, "font-variant", "small-caps", "cannot be drawn");
+        warn_of_value(c, fl_css_property("font-variant"), "small-caps");
     const char *text = custom && !*d->value ? " " : d->value; // which is a value, unlike ""
     const Value value = {name, property, text, d->important};
     for (guint i = 0; i < values->len; i++)
@@ -317,7 +323,7 @@ static char *compute(Cascade *c, const char *name, const FlCssProperty *property
     g_autofree char *substituted = variable ? fl_css_substitute(text, find_variable, style) : NULL;
     const char *value = !variable ? text : substituted ? g_strstrip(substituted) : "unset";
     if (variable && substituted && !fl_css_is_valid(property, value)) {
-        warn(c, name, value, "is not a value of that property");
+        warn_of_value(c, property, value);
         value = "unset";
     }
     const char *keyword = resolve_keyword(property, value);
@@ -328,6 +334,7 @@ static char *compute(Cascade *c, const char *name, const FlCssProperty *property
          g_str_has_prefix(value, "lch(")))
         warn(c, name, value, "mixes in Oklab in a browser, which cannot be drawn");
     char *colour = property->kind == FL_CSS_PAINT ? fl_css_colour_with(value, style->colour) : NULL;
+    char *word;
     switch (property->kind) {
     case FL_CSS_PAINT:
         return colour ? colour : g_strdup(value);
@@ -339,7 +346,8 @@ static char *compute(Cascade *c, const char *name, const FlCssProperty *property
     case FL_CSS_NUMBER:
         return compute_number(value, &style->units);
     default:
-        return g_strdup(value);
+        word = fl_css_word(property, value);
+        return word ? word : g_strdup(value);
     }
 }
 
@@ -348,9 +356,9 @@ static void set_font_size(Style *style, const char *text, bool root)
     static const struct {
         const char *word;
         double factor; // of 16 px; negative: of the size around
-    } words[] = {{"xx-small", .5625}, {"x-small", .625}, {"small", .8125},
-                 {"medium", 1},       {"large", 1.125},  {"x-large", 1.5},
-                 {"xx-large", 2},     {"larger", -1.2},  {"smaller", -1 / 1.2}};
+    } words[] = {{"xx-small", .5625}, {"x-small", .625},    {"small", .8125}, {"medium", 1},
+                 {"large", 1.125},    {"x-large", 1.5},     {"xx-large", 2},  {"xxx-large", 3},
+                 {"larger", -1.2},    {"smaller", -1 / 1.2}};
     double value = 0;
     if (fl_css_number(text, &style->units, style->units.font_size, &value) && value > 0)
         style->units.font_size = value;
@@ -559,7 +567,7 @@ static void compute_attributes(Cascade *c, xmlNode *node, const Style *style)
             continue; // fill="freeze"
         g_autofree char *trimmed = g_strstrip(g_strdup(text));
         if (!fl_css_is_valid(property, trimmed)) {
-            warn(c, name, trimmed, "is not a value of that property");
+            warn_of_value(c, property, trimmed);
             continue; // librsvg decides
         }
         g_autofree char *value = compute(c, name, property, trimmed, style);

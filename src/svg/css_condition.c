@@ -182,9 +182,10 @@ static bool test_support(const void *data, const char *text)
     g_autofree char *property =
         colon ? g_ascii_strdown(text, (gssize)(colon - text)) : g_strdup("");
     const FlCssProperty *known = fl_css_property(g_strstrip(property));
-    return colon &&
-           (g_str_has_prefix(property, "--") || (known && known->kind != FL_CSS_IGNORED &&
-                                                 fl_css_is_valid(known, fl_css_space(colon + 1))));
+    if (!colon || !known || known->kind == FL_CSS_IGNORED)
+        return colon && (known || g_str_has_prefix(property, "--")) &&
+               !g_str_has_prefix(property, "-m"); // -moz-, -ms-
+    return fl_css_is_valid(known, fl_css_space(colon + 1));
 }
 
 bool fl_css_supports(const char *condition)

@@ -6,7 +6,7 @@
 #include <string.h>
 
 static const FlCssProperty known[] = {
-#define P(name, kind, inherited, initial) {name, FL_CSS_##kind, inherited, initial},
+#define P(name, kind, inherited, initial, words) {name, FL_CSS_##kind, inherited, initial, words},
 #include "svg/css_properties.def"
 #undef P
 };
@@ -111,7 +111,7 @@ static const char *const ignored[] = {
     "math-",
 };
 
-static const FlCssProperty harmless = {"", FL_CSS_IGNORED, false, NULL};
+static const FlCssProperty harmless = {"", FL_CSS_IGNORED, false, NULL, NULL};
 
 static int compare(const void *name, const void *property)
 {
@@ -151,16 +151,33 @@ static bool is_numbers(const char *value)
     return good;
 }
 
+char *fl_css_word(const FlCssProperty *property, const char *value)
+{
+    const size_t n = strlen(value);
+    for (const char *word = property->words; word; word = strchr(word, ' ')) {
+        word += *word == ' ';
+        if (strcspn(word, " ") == n && g_ascii_strncasecmp(word, value, n) == 0)
+            return g_strndup(word, n);
+    }
+    return NULL;
+}
+
 bool fl_css_is_valid(const FlCssProperty *property, const char *value)
 {
-    static const char *const keywords[] = {"inherit", "initial", "unset",  "revert", "revert-layer",
-                                           "auto",    "none",    "normal", NULL};
+    static const char *const any[] = {"inherit", "initial",      "unset",
+                                      "revert",  "revert-layer", NULL};
+    static const char *const usual[] = {"auto", "none", "normal", NULL};
     if (!*value)
         return false;
-    if (strstr(value, "var(") || strstr(value, "env(") || g_strv_contains(keywords, value))
+    if (strstr(value, "var(") || strstr(value, "env(") || g_strv_contains(any, value))
         return true;
     g_autofree char *colour =
         property->kind == FL_CSS_PAINT ? fl_css_colour_with(value, "black") : NULL;
+    g_autofree char *word = fl_css_word(property, value);
+    if (word || (property->words && property->kind == FL_CSS_TEXT))
+        return word != NULL;
+    if (g_strv_contains(usual, value))
+        return true;
     switch (property->kind) {
     case FL_CSS_PAINT:
         return colour != NULL;
@@ -168,15 +185,12 @@ bool fl_css_is_valid(const FlCssProperty *property, const char *value)
         return strcmp(value, "0") == 0; // or none
     case FL_CSS_TRANSFORM:
         return strcmp(property->name, "offset") != 0; // a shorthand; <stop> has it as attribute
-    case FL_CSS_BLEND:
-        return !g_str_has_prefix(value, "plus-");
     case FL_CSS_NUMBER:
     case FL_CSS_GEOMETRY:
+    case FL_CSS_LENGTH:
         return is_number(value);
     case FL_CSS_LENGTHS:
         return is_numbers(value);
-    case FL_CSS_LENGTH:
-        return is_number(value) || (g_ascii_isalpha(*value) && !strchr(value, '(')); // larger
     default:
         return true;
     }

@@ -9,7 +9,6 @@ typedef enum FlCssKind {
     FL_CSS_LENGTH,    // a length or percentage
     FL_CSS_LENGTHS,   // a list of such
     FL_CSS_NUMBER,    // a number or percentage
-    FL_CSS_BLEND,     // a word, but for those that librsvg does not have
     FL_CSS_ABSENT,    // only none can be drawn
     FL_CSS_REFERENCE, // url() and functions, which become those of SVG 1.1
     FL_CSS_TEXT,      // librsvg reads it as a browser does
@@ -25,6 +24,7 @@ typedef struct FlCssProperty {
     FlCssKind kind;
     bool inherited;
     const char *initial; // NULL: it may be left out instead
+    const char *words;   // that are its values, one of them the initial one; NULL: any text
 } FlCssProperty;
 
 /** A property by its name in lower case; NULL if it is unknown. */
@@ -32,6 +32,10 @@ const FlCssProperty *fl_css_property(const char *name);
 
 /** The i-th of all that are known; NULL after the last. */
 const FlCssProperty *fl_css_property_at(int i);
+
+/** The word among those of the property, however it is written; to be freed; NULL: it has no such
+ * word. */
+char *fl_css_word(const FlCssProperty *property, const char *value);
 
 /** Returns: true if `value` can be one of the property, or is one for all properties. */
 bool fl_css_is_valid(const FlCssProperty *property, const char *value);

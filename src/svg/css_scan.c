@@ -1,10 +1,33 @@
 #include "svg/css_scan.h"
 
+#include <math.h>
 #include <string.h>
 
 const char *fl_css_space(const char *s)
 {
     return s + strspn(s, FL_CSS_SPACE);
+}
+
+bool fl_number_read(const char **text, double *value)
+{
+    const char *s = *text + (**text == '+' || **text == '-');
+    const size_t before = strspn(s, "0123456789");
+    s += before;
+    const size_t after = *s == '.' ? strspn(s + 1, "0123456789") : 0;
+    if (before == 0 && after == 0) // strtod would read "inf" and "0x1"
+        return false;
+    if (*s == '.' && after == 0)
+        return false;
+    s += after ? 1 + after : 0;
+    const size_t sign = (*s == 'e' || *s == 'E') && (s[1] == '+' || s[1] == '-');
+    if ((*s == 'e' || *s == 'E') && g_ascii_isdigit(s[1 + sign]))
+        s += 1 + sign + strspn(s + 1 + sign, "0123456789");
+    const double read = g_ascii_strtod(*text, NULL);
+    if (!isfinite(read))
+        return false;
+    *value = read;
+    *text = s;
+    return true;
 }
 
 /** Skips a string with its quotes. */

@@ -21,6 +21,13 @@ const char *fl_css_find(const char *s, const char *stops);
 /** Likewise, but passes closing brackets that were not opened. */
 const char *fl_css_find_past(const char *s, const char *stops);
 
+/**
+ * Reads a number of SVG or CSS, without a unit, and skips it.
+ *
+ * Returns: false if *s begins with none, or one that is not finite; *s is as it was then.
+ */
+bool fl_number_read(const char **s, double *value);
+
 /** The length in bytes of the identifier at the start of `s`, escapes included; 0 if it has no
  * identifier. */
 size_t fl_css_identifier(const char *s);

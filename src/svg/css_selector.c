@@ -290,7 +290,8 @@ static bool read_type(const char **s, Simple *simple)
         else if (read_name(s, &simple->name))
             simple->kind = SIMPLE_TYPE, simple->specificity = 1;
         else
-            return k > 0 ? false : **s == '|' && ((*s)++, read_type(s, simple));
+            return k == 0 && **s == '|' && ((*s)++, read_type(s, simple)) &&
+                   (simple->kind = SIMPLE_NEVER, true); // without a namespace
         if (**s != '|' || (*s)[1] == '=')
             return true;
         (*s)++;

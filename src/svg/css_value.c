@@ -230,9 +230,8 @@ static bool read_term(const Calc *calc, const char **s, double *value)
     const char *digits = *s + (**s == '-' || **s == '+');
     if (!g_ascii_isdigit(*digits) && *digits != '.')
         return read_call(calc, s, value);
-    char *end;
-    *value = g_ascii_strtod(*s, &end);
-    if (end == *s)
+    const char *end = *s;
+    if (!fl_number_read(&end, value))
         return false;
     const size_t n =
         *end == '%' ? 1 : strspn(end, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");

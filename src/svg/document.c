@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/limits.h"
+#include "svg/css_scan.h"
 #include <errno.h>
 #include <gio/gio.h>
 #include <glib/gstdio.h>
@@ -128,17 +129,12 @@ void fl_set_attribute(xmlNode *node, const char *name, const char *value)
 bool fl_view_box(const xmlNode *node, double box[4])
 {
     g_autoptr(xmlChar) text = fl_attribute(node, "viewBox");
-    const char *s = (const char *)text;
+    const char *s = text ? (const char *)text : "";
     double v[4];
     for (int k = 0; k < 4; k++) {
-        char *end = NULL;
-        if (!s)
-            return false;
         s += strspn(s, " \t\r\n\f,");
-        v[k] = g_ascii_strtod(s, &end);
-        if (end == s)
+        if (!fl_number_read(&s, &v[k]))
             return false;
-        s = end;
     }
     if (!(v[2] > 0 && v[3] > 0))
         return false;

@@ -46,7 +46,7 @@ static FlOutlineKind draw_shape(const Reader *reader, const xmlNode *node, const
     const bool polygon = fl_is(node, "polygon");
     if (polygon || fl_is(node, "polyline")) {
         g_autoptr(xmlChar) points = fl_attribute(node, "points");
-        fl_pen_points(pen, points ? (const char *)points : "", polygon);
+        *broken |= !fl_pen_points(pen, points ? (const char *)points : "", polygon);
         return FL_OUTLINE_POLY;
     }
     return FL_OUTLINE_NONE;

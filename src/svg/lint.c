@@ -106,12 +106,14 @@ static void check_references(const Lint *lint, xmlNode *node)
     }
 }
 
-static void check_path(const Lint *lint, const xmlNode *node)
+static void check_path(const Lint *lint, xmlNode *node)
 {
     g_autoptr(xmlChar) d = fl_attribute(node, "d");
     const char *rest = d ? fl_path_data_error((const char *)d) : NULL;
     if (!rest)
         return;
+    g_autofree char *good = g_strndup((const char *)d, (gsize)(rest - (const char *)d));
+    fl_set_attribute(node, "d", good); // librsvg would draw on after "1."
     g_autofree char *text = g_strdup_printf("the path is broken at “%.12s” (character %d) and is "
                                             "drawn up to there",
                                             rest, (int)(rest - (const char *)d) + 1);
@@ -209,12 +211,14 @@ static void lint_node(const Lint *lint, xmlNode *node)
 {
     check_text(lint, node);
     check_values(lint, node);
+    if (node->ns && strcmp((const char *)node->name, "include") == 0)
+        warn(lint, node, "what <include> brings in is drawn without the styles of the drawing");
     if (fl_is(node, "foreignObject"))
         check_foreign(lint, node);
     check_references(lint, node);
     if (fl_is_animation(node))
         warn(lint, node->parent, "the animation in it is not played: the base value is drawn");
-    if (lint->warnings && fl_is(node, "path"))
+    if (fl_is(node, "path"))
         check_path(lint, node);
     for (xmlNode *child = node->children; child; child = child->next)
         if (child->type == XML_ELEMENT_NODE)

@@ -2,10 +2,10 @@
 
 #include "base/limits.h"
 #include "svg/css_scan.h"
+#include "svg/css_value.h"
 #include "svg/document.h"
+#include "svg/geometry.h"
 #include "svg/normalise.h"
-#include "svg/path_data.h"
-#include <math.h>
 #include <string.h>
 
 #define MOST_CLIPS 16 // of clip paths that clip each other
@@ -16,6 +16,18 @@ static xmlNode *element_beside(xmlNode *node, bool before)
         node = before ? node->prev : node->next;
     while (node && node->type != XML_ELEMENT_NODE);
     return node;
+}
+
+/** The value of a property that an element has or inherits, to be freed; NULL without one. */
+static char *inherited_word(const xmlNode *node, const char *name)
+{
+    for (; node && node->type == XML_ELEMENT_NODE; node = node->parent) {
+        char *word = fl_property(node, name);
+        if (word && strcmp(word, "inherit") != 0)
+            return word;
+        g_free(word);
+    }
+    return NULL;
 }
 
 /* ---- drop shadows ---------------------------------------------------------------------------- */
@@ -115,19 +127,19 @@ static void mend_gradient(xmlNode *node)
 static void mend_points(xmlNode *node)
 {
     g_autoptr(xmlChar) text = fl_attribute(node, "points");
-    char *s = (char *)text, *good = s, *end;
+    const char *s = (const char *)text, *good = s;
+    double v;
     int n = 0;
-    while (s && isfinite(g_ascii_strtod(s, &end)) && end != s) {
-        s = end;
+    while (s && fl_number_read(&s, &v)) {
         if (++n % 2 == 0)
-            good = end;
-        s += strspn(s, " \t\r\n\f");
+            good = s;
+        s += strspn(s, FL_CSS_SPACE);
         s += *s == ',';
     }
     if (!s || *s || n % 2 == 0)
         return; // librsvg decides
-    *good = '\0';
-    fl_set_attribute(node, "points", (char *)text);
+    g_autofree char *pairs = g_strndup((const char *)text, (gsize)(good - (const char *)text));
+    fl_set_attribute(node, "points", pairs);
 }
 
 /* ---- clip paths that are clipped ------------------------------------------------------------- */
@@ -176,22 +188,40 @@ static void mend_clip(xmlNode *node, GHashTable *ids)
 
 /* ---- paths ---- */
 
-static void note_line(void *data, char command, const double *v)
+/** Appends a line of next to no length for each subpath that has none. */
+static void append_dots(GString *d, const FlOutlines *outlines)
 {
-    (void)v;
-    bool *draws = data;
-    *draws = *draws || g_ascii_toupper(command) != 'M';
+    for (int i = 0; i < outlines->n_subpaths; i++) {
+        const FlSubpath *sub = &outlines->subpath[i];
+        const FlPoint at = outlines->cubic[sub->first].p[0];
+        bool dot = true;
+        for (int k = 0; k < 4 * sub->n && dot; k++) {
+            const FlPoint p = outlines->cubic[sub->first + k / 4].p[k % 4];
+            dot = p.x == at.x && p.y == at.y;
+        }
+        g_autofree char *x = fl_css_number_text(at.x), *y = fl_css_number_text(at.y);
+        if (dot)
+            g_string_append_printf(d, "M%s %sh.01", x, y);
+    }
 }
 
-/** librsvg puts caps at a path that only moves, as charts write for a curve of one point. */
+/** librsvg puts caps at a path that only moves, as charts write for a curve of one point, and
+ * leaves square ones of a path without length out. */
 static void mend_caps(xmlNode *path)
 {
     g_autoptr(xmlChar) d = fl_attribute(path, "d");
-    bool draws = !d || strpbrk((const char *)d, "LlHhVvCcSsQqTtAaZz"); // as nearly all have
-    if (!draws)
-        fl_path_data_walk((const char *)d, note_line, &draws);
-    if (!draws)
+    g_autofree char *cap = inherited_word(path, "stroke-linecap");
+    const bool square = cap && strcmp(cap, "square") == 0;
+    if (!d || (!square && strpbrk((const char *)d, "LlHhVvCcSsQqTtAaZz"))) // as nearly all have
+        return;
+    g_autoptr(FlOutlines) outlines = fl_outlines_of_shape(path, 96, (FlPageSize){1, 1});
+    GString *dotted = g_string_new((const char *)d);
+    append_dots(dotted, outlines);
+    if (outlines->n_subpaths == 0)
         fl_declare(path, "stroke-linecap:butt");
+    else if (square)
+        fl_set_attribute(path, "d", dotted->str);
+    g_string_free(dotted, TRUE);
 }
 
 /* ---- text ------------------------------------------------------------------------------------ */
@@ -214,12 +244,8 @@ static int height_of(const char *word)
 
 static int baseline_of(const xmlNode *node)
 {
-    for (; node && node->type == XML_ELEMENT_NODE; node = node->parent) {
-        g_autofree char *word = fl_property(node, "dominant-baseline");
-        if (word && strcmp(word, "inherit") != 0)
-            return height_of(word);
-    }
-    return 0;
+    g_autofree char *word = inherited_word(node, "dominant-baseline");
+    return word ? height_of(word) : 0;
 }
 
 /** librsvg lacks the baselines by which charts put labels at the height of a mark. */

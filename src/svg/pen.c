@@ -1,5 +1,6 @@
 #include "svg/pen.h"
 
+#include "svg/css_scan.h"
 #include <math.h>
 #include <string.h>
 
@@ -220,23 +221,21 @@ void fl_pen_rect(FlPen *pen, double x, double y, double w, double h, double rx, 
     close_subpath(pen);
 }
 
-void fl_pen_points(FlPen *pen, const char *points, bool closed)
+bool fl_pen_points(FlPen *pen, const char *points, bool closed)
 {
     double v[2];
     int n = 0;
-    for (const char *s = points; *s;) {
+    const char *s = points;
+    for (;; n++) {
         s += strspn(s, " \t\r\n\f,");
-        char *end;
-        v[n % 2] = g_ascii_strtod(s, &end);
-        if (end == s)
+        if (!fl_number_read(&s, &v[n % 2]))
             break;
-        s = end;
-        n++;
-        if (n == 2)
+        if (n == 1)
             fl_pen_move(pen, (FlPoint){v[0], v[1]});
-        else if (n % 2 == 0)
+        else if (n % 2 == 1)
             fl_pen_line(pen, (FlPoint){v[0], v[1]});
     }
     if (closed)
         close_subpath(pen);
+    return !*s;
 }

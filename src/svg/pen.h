@@ -4,6 +4,7 @@
 
 #include "svg/affine.h"
 #include <glib.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 /** Consecutive cubics; a line has its control points at thirds. */
@@ -35,7 +36,8 @@ void fl_pen_ellipse(FlPen *pen, double cx, double cy, double rx, double ry);
 /** Eight segments; those of sharp corners have no length. */
 void fl_pen_rect(FlPen *pen, double x, double y, double w, double h, double rx, double ry);
 
-/** Adds the points attribute of a polyline or, if closed, of a polygon. */
-void fl_pen_points(FlPen *pen, const char *points, bool closed);
+/** Adds the points attribute of a polyline or, if closed, of a polygon. Returns: false if there is
+ * more than numbers in it. */
+bool fl_pen_points(FlPen *pen, const char *points, bool closed);
 
 #endif

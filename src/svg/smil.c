@@ -107,7 +107,7 @@ static bool is_discrete(const char *name)
     static const char *const names[] = {"href", "class", "preserveAspectRatio", "in", "type", NULL};
     const FlCssProperty *property = fl_css_property(name);
     return g_strv_contains(names, name) ||
-           (property && property->kind >= FL_CSS_BLEND && property->kind <= FL_CSS_TEXT);
+           (property && property->kind >= FL_CSS_ABSENT && property->kind <= FL_CSS_TEXT);
 }
 
 /** The value at a moment; NULL if the animation has no effect. */

@@ -1,6 +1,6 @@
 #include "svg/transform.h"
 
-#include <glib.h>
+#include "svg/css_scan.h"
 #include <math.h>
 #include <string.h>
 
@@ -39,13 +39,10 @@ static const char *read_call(const char *s, Call *call)
         return NULL;
     s += 1 + strspn(s + 1, " \t\r\n\f");
     while (*s && *s != ')') {
-        char *end;
-        if (call->n == MOST_ARGUMENTS)
+        double v;
+        if (call->n == MOST_ARGUMENTS || !fl_number_read(&s, &v))
             return NULL;
-        const double v = g_ascii_strtod(s, &end);
-        if (end == s)
-            return NULL;
-        s = end;
+        const char *end = s;
         while (g_ascii_isalpha(*s) || *s == '%')
             s++;
         const double unit = unit_of(end, (size_t)(s - end));
