@@ -89,8 +89,8 @@ mkdir lined
 for i in 1 2 3 4; do
     echo "<svg xmlns='http://www.w3.org/2000/svg' width='56' height='56'><rect x='4' y='4'" \
         "width='48' height='48' fill='#2255aa'/><g fill='none' stroke='#221100'>" \
-        "<path d='M$((3 + i)) 9L50 $((20 + 3 * i))L12 44' stroke-width='1.5'/>" \
-        "<path d='M9 50L$((40 + i)) 50' stroke-width='4'/></g></svg>" >lined/w_000$i.svg
+        "<path d='M$((3 + i)) 9L50 $((20 + 3 * i))L12 44' stroke-width='1'/>" \
+        "<path d='M9 50L$((40 + i)) 50' stroke-width='1.1'/></g></svg>" >lined/w_000$i.svg
 done
 lines() {
     local to=$1

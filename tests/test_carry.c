@@ -211,6 +211,7 @@ static void a_share_is_carried_and_what_goes_along_is_left(void)
         }
 }
 
+/* Nor has paint whose patch was cut off at a side of the page. */
 static void what_is_uncovered_has_no_match(void)
 {
     g_auto(FlGuides) guides = {0};
@@ -219,7 +220,8 @@ static void what_is_uncovered_has_no_match(void)
     carried_on(&guides, 1, 1, &nnf);
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++)
-            g_assert_true((nnf.match[y * SIDE + x].frame == FL_NO_MATCH) == (x < 5 || y < 2));
+            g_assert_true((nnf.match[y * SIDE + x].frame == FL_NO_MATCH) ==
+                          (x < 5 + FL_PATCH_RADIUS || y < 2 + FL_PATCH_RADIUS));
 }
 
 static void how_deep_paint_was_comes_along(void)
@@ -230,7 +232,7 @@ static void how_deep_paint_was_comes_along(void)
     moving_guides(leap, 0, &guides);
     coherent_field(&before);
     carry_once(&guides, 1, 1, &before, &after);
-    for (int x = 5; x < SIDE; x++)
+    for (int x = 5 + FL_PATCH_RADIUS; x < SIDE; x++)
         g_assert_cmpint(fl_rest_depth(after.shape[CENTRE * SIDE + x]), ==, x - 5);
     g_assert_cmpint(after.shape[CENTRE * SIDE + 3], ==, 0);
 }

@@ -13,6 +13,7 @@ typedef struct Vector {
 } Vector;
 
 #define CARRY_ONE 1024
+#define EDGE FL_PATCH_RADIUS
 
 /* Values shared by all pixels of a frame. */
 typedef struct Plan {
@@ -169,6 +170,13 @@ static Origin same_place(const FlNnf *before, int x, int y)
     return (Origin){.x = x, .y = y, .match = m, .off = off_of(m)};
 }
 
+/* True if paint has come inward from a side of the page: its patch was cut off there, and would
+ * stay as a seam in what a camera brings into view. */
+static bool was_cut(int was, int is, int size)
+{
+    return (was < EDGE && is >= EDGE) || (was >= size - EDGE && is < size - EDGE);
+}
+
 /* The pixel at (x, y) of the frame, p of out. */
 static void arrive(const Plan *plan, const FlNnf *before, FlRect from, int x, int y, size_t p,
                    FlCarried *out)
@@ -193,6 +201,9 @@ static void arrive(const Plan *plan, const FlNnf *before, FlRect from, int x, in
         const int turn = guides->turn[pixel] * in_steps(carry) / CARRY_ONE;
         m = carried(plan, m, origin.rest, (int16_t)turn);
         m.off = off_from(plan, origin.off);
+        if (was_cut(from.x + origin.x, x, guides->width) ||
+            was_cut(from.y + origin.y, y, guides->height))
+            m.frame = FL_NO_MATCH;
     }
     const size_t was =
         (size_t)(from.y + origin.y) * (size_t)input->width + (size_t)(from.x + origin.x);

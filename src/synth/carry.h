@@ -33,7 +33,8 @@ void fl_carried_clear(FlCarried *carried);
  * fast as the shapes that they paint. The match is shifted by the distance between its pixel and
  * the pixel that it was taken from, and turned.
  *
- * Matches are not carried where the motion is unknown; the speed there is the part of the flow that
+ * Matches are not carried where the motion is unknown, nor inward from a side of the page, where
+ * their patches were cut off; the speed where it is unknown is the part of the flow that
  * `carry` leaves. A pixel without a match in the frame before, or outside the mask, may have none
  * and has no speed. `out` is as large as rect.
  */
