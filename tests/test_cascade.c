@@ -375,6 +375,7 @@ static void images_keep_their_shape(void)
 static void gaps_of_librsvg_are_filled(void)
 {
     assert_value("<polygon id='a' points='0 0 9,0 9 9 5'/>", "points", "0 0 9,0 9 9");
+    assert_value("<polygon id='a' points='0 0;9 0;9 9'/>", "points", "0 0");
     assert_value("<clipPath id='e'/><clipPath id='c' clip-path='url(#e)'/>"
                  "<path id='a' transform='scale(2)' clip-path='url(#c)'/>",
                  "clip-path", "url(#e)"); // of the group around

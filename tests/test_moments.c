@@ -66,6 +66,8 @@ static void easing_is_that_of_css(void)
     g_assert_cmpfloat(fl_css_ease("steps(4, start)", .3), ==, .5);
     g_assert_cmpfloat(fl_css_ease("steps(2, jump-none)", .6), ==, 1);
     g_assert_cmpfloat_with_epsilon(fl_css_ease("linear(0, 1 50%, 0)", .25), .5, 1e-9);
+    g_assert_cmpfloat_with_epsilon(fl_css_ease("linear(0, .8 40% 60%, 1)", .5), .8, 1e-9);
+    g_assert_cmpfloat_with_epsilon(fl_css_ease("linear(0, .2, .4 80%, 1)", .4), .2, 1e-9);
 }
 
 #define RECT(animation) "<rect id='a' x='1' width='5' height='5'>" animation "</rect>"
@@ -122,6 +124,8 @@ static void smil_begins_and_ends_with_others(void)
               1.5, "x", "7.5");
     assert_at(RECT("<animate attributeName='x' from='0' to='10' dur='2s' begin='0;1'/>"), 1.5, "x",
               "2.5");
+    assert_at(RECT("<animate attributeName='x' from='1' to='9' dur='1s' max='.5s'/>"), .75, "x", "1");
+    assert_at(RECT("<animate attributeName='rx' to='8' dur='1s'/>"), .5, "rx", "4");
     assert_at(RECT("<animate attributeName='x' from='0' to='10' dur='1s' repeatDur='1.5s' "
                    "fill='freeze'/>"),
               4, "x", "5");

@@ -597,7 +597,9 @@ static void apply(Cascade *c, xmlNode *node, const Value *v, const Style *style,
         fl_css_effects_set(effects, v->name, g_steal_pointer(&value));
         break;
     case FL_CSS_GEOMETRY:
-        if (strcmp(value, "inherit") != 0 && takes_geometry(node, v->name))
+        if (strcmp(value, "inherit") == 0)
+            warn(c, v->name, value, "cannot be drawn");
+        else if (takes_geometry(node, v->name))
             fl_set_attribute(node, v->name, strcmp(value, "auto") == 0 ? "" : value);
         break;
     default:

@@ -40,23 +40,53 @@ static double ease_in_steps(const char *arguments, double x)
     return jumps > 0 ? CLAMP(step, 0, jumps) / jumps : x;
 }
 
-/** linear(0, .5 20% 60%, 1) [CSS Easing 2 §2.1]. */
+/** The points of linear(0, .5 20% 60%, 1), FlPoint [CSS Easing 2 §2.1]; x is NAN where none is
+ * said.
+ */
+static GArray *points_of(const char *arguments)
+{
+    GArray *points = g_array_new(FALSE, FALSE, sizeof(FlPoint));
+    g_auto(GStrv) stop = fl_css_split(arguments, ',');
+    for (int i = 0; stop[i]; i++) {
+        g_auto(GStrv) word = fl_css_split(stop[i], ' ');
+        const bool said = word[0] && word[1], end = i == 0 || !stop[i + 1];
+        FlPoint p = {end ? i > 0 : NAN, word[0] ? g_ascii_strtod(word[0], NULL) : 0};
+        for (int k = 1; said && word[k]; k++) {
+            p.x = g_ascii_strtod(word[k], NULL) / 100;
+            g_array_append_val(points, p);
+        }
+        if (!said)
+            g_array_append_val(points, p);
+    }
+    return points;
+}
+
+/** Spreads the points whose x is not said between those on both sides. */
+static void spread(GArray *points)
+{
+    FlPoint *p = (FlPoint *)points->data;
+    for (guint i = 1, last = 0; i < points->len; i++) {
+        if (isnan(p[i].x))
+            continue;
+        p[i].x = fmax(p[i].x, p[last].x);
+        for (guint k = last + 1; k < i; k++)
+            p[k].x = p[last].x + (p[i].x - p[last].x) * (k - last) / (i - last);
+        last = i;
+    }
+}
+
 static double ease_by_list(const char *arguments, double x)
 {
-    g_auto(GStrv) stop = fl_css_split(arguments, ',');
-    const int n = (int)g_strv_length(stop);
-    double last_x = 0, last_y = 0;
-    for (int i = 0; i < n; i++) {
-        g_auto(GStrv) word = fl_css_split(stop[i], ' ');
-        const double y = word[0] ? g_ascii_strtod(word[0], NULL) : 0;
-        double at = n > 1 ? (double)i / (n - 1) : 1;
-        for (int k = 1; word[0] && word[k]; k++)
-            at = g_ascii_strtod(word[k], NULL) / 100;
-        if (x <= at)
-            return at > last_x ? last_y + (y - last_y) * (x - last_x) / (at - last_x) : y;
-        last_x = at, last_y = y;
-    }
-    return last_y;
+    g_autoptr(GArray) points = points_of(arguments);
+    const FlPoint *p = (const FlPoint *)points->data;
+    guint i = 1;
+    spread(points);
+    while (i + 1 < points->len && x >= p[i].x)
+        i++;
+    if (points->len < 2)
+        return points->len ? p[0].y : x;
+    const double length = p[i].x - p[i - 1].x;
+    return length > 0 ? p[i - 1].y + (p[i].y - p[i - 1].y) * (x - p[i - 1].x) / length : p[i].y;
 }
 
 double fl_css_ease(const char *function, double x)
@@ -96,24 +126,13 @@ double fl_css_ease(const char *function, double x)
  * count. */
 static size_t number_length(const char *s, const char *begin)
 {
-    const char *digits = s + (*s == '-' || *s == '+');
-    const size_t whole = strspn(digits, "0123456789");
-    size_t n = (size_t)(digits - s) + whole;
+    const char *end = s;
+    double ignored;
     const bool in_name = s > begin + 1 && g_ascii_isalpha(s[-1]) &&
                          (strchr("-_", s[-2]) || (g_ascii_isalpha(s[-2]) && !strchr("zZ", s[-2])));
     if (in_name || (s > begin && s[-1] == '#')) // path data has one letter before a number, or two
         return 0;
-    if (s[n] == '.') {
-        const size_t after = strspn(s + n + 1, "0123456789");
-        if (whole + after == 0)
-            return 0;
-        n += 1 + after;
-    } else if (whole == 0)
-        return 0;
-    if ((s[n] == 'e' || s[n] == 'E') &&
-        g_ascii_isdigit(s[n + 1 + (s[n + 1] == '-' || s[n + 1] == '+')]))
-        n += 2 + strspn(s + n + 2, "0123456789");
-    return n;
+    return fl_number_read(&end, &ignored) ? (size_t)(end - s) : 0;
 }
 
 /** The length of a unit behind a number; letters of path data are none. */

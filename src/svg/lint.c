@@ -202,6 +202,13 @@ static void check_values(const Lint *lint, const xmlNode *node)
     if (fl_is(node, "image") && (has_value(node, "image-rendering", "pixelated") ||
                                  has_value(node, "image-rendering", "crisp-edges")))
         warn(lint, node, "image-rendering is left out: the image is smoothed");
+    if (fl_is(node, "clipPath") && has_value(node, "clipPathUnits", "objectBoundingBox") &&
+        xmlHasProp((xmlNode *)node, (xmlChar *)"transform"))
+        warn(lint, node, "the transform of a clip path in units of the box is applied in the box");
+    g_autoptr(xmlChar) d = fl_is(node, "path") ? fl_attribute(node, "d") : NULL;
+    if (d && strpbrk((const char *)d + (*d != '\0'), "Mm") &&
+        (fl_is_set(node, "marker-mid") || fl_is_set(node, "marker-start")))
+        warn(lint, node, "markers where a path begins anew may turn another way or be left out");
     g_autofree char *clip = fl_is(node->parent, "clipPath") ? fl_property(node, "clip-path") : NULL;
     if (clip && strcmp(clip, "none") != 0)
         warn(lint, node, "the clip of a shape in a clip path is left out");

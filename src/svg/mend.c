@@ -123,7 +123,7 @@ static void mend_gradient(xmlNode *node)
 
 /* ---- lists of points ------------------------------------------------------------------------- */
 
-/** Cuts the last number off a list of points that ends with half a pair. */
+/** Cuts a list of points off where it breaks, and half a pair at its end. */
 static void mend_points(xmlNode *node)
 {
     g_autoptr(xmlChar) text = fl_attribute(node, "points");
@@ -136,8 +136,8 @@ static void mend_points(xmlNode *node)
         s += strspn(s, FL_CSS_SPACE);
         s += *s == ',';
     }
-    if (!s || *s || n % 2 == 0)
-        return; // librsvg decides
+    if (!s || (!*s && n % 2 == 0))
+        return;
     g_autofree char *pairs = g_strndup((const char *)text, (gsize)(good - (const char *)text));
     fl_set_attribute(node, "points", pairs);
 }
@@ -260,14 +260,16 @@ static void mend_baseline(xmlNode *text)
         fl_declare(text, shift);
 }
 
-/* ---- symbols --------------------------------------------------------------------------------- */
+/* ---- symbols and drawings -------------------------------------------------------------------- */
 
-/** librsvg cuts a <symbol> off at its viewBox, a browser at the place where <use> shows it: it is
- * copied to that place. A cycle is left for fl_document_normalise() to tell. */
+/** librsvg cuts a <symbol> off at its viewBox, a browser at the place where <use> shows it, and it
+ * leaves the size out that <use> gives to an <svg>: both are copied to that place. A cycle is left
+ * for fl_document_normalise() to tell. */
 static void mend_use(xmlNode *use, GHashTable *ids, int *n_copied)
 {
     const xmlNode *target = fl_shown_by_use(use, ids);
-    if (!target || !fl_is(target, "symbol") || *n_copied > fl_limit(FL_LIMIT_ELEMENTS))
+    if (!target || !(fl_is(target, "symbol") || fl_is(target, "svg")) ||
+        *n_copied > fl_limit(FL_LIMIT_ELEMENTS))
         return;
     g_autoptr(xmlChar) id = fl_attribute(target, "id");
     int depth = 0;

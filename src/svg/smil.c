@@ -176,7 +176,7 @@ static char *base_value(const xmlNode *node, const char *name)
     if (!value)
         value = fl_foreign_attribute(node, name);
     if (!value && property && property->initial)
-        value = g_strdup(property->initial);
+        value = g_strdup(strcmp(property->initial, "auto") == 0 ? "0" : property->initial);
     char *important = value ? strstr(value, "!important") : NULL;
     if (important)
         *important = '\0', g_strchomp(value);

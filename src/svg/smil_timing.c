@@ -172,7 +172,7 @@ static void read_animation(const FlTimeline *timeline, FlAnimation *a)
     a->target = fl_timeline_referred(timeline, a->node, a->node->parent);
     a->attribute = motion ? g_strdup("transform") : g_strdup(colon ? colon + 1 : name);
     a->dur = duration(a->node, "dur", INFINITY);
-    a->active = active_duration(a->node, a->dur);
+    a->active = fmin(active_duration(a->node, a->dur), duration(a->node, "max", INFINITY));
     a->freezes = fill && strcmp(fill, "freeze") == 0;
     a->restart = restart ? restart[0] : 'a';
     a->begin = read_conditions(timeline, a->node, "begin", "0");
