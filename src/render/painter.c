@@ -181,10 +181,10 @@ static bool make_sequence(FlPainter *painter, bool alone, GError **error)
     memmove(kept + 1, kept, (size_t)MIN(k, most - 1) * sizeof *kept);
     if (k == most) {
         fl_guide_sequence_free(guides.sequence);
-        guides.made_of = digest;
         guides.sequence = fl_painter_open_fluid(painter, error)
                               ? fl_guide_sequence_new(&source, &params, error)
                               : NULL;
+        guides.made_of = guides.sequence ? digest : (FlDigest){0};
         fl_painter_close_fluid(painter);
     }
     kept[0] = guides;
