@@ -7,15 +7,21 @@ import http.client, json, socket, struct, sys, time, urllib.parse
 
 address = urllib.parse.urlsplit(sys.argv[1])
 root, host = address.path, address.netloc
-own = {"Origin": f"http://{host}", "Content-Type": "application/x-www-form-urlencoded"}
+own = {"Origin": f"http://{host}"}
 
 
-def ask(method, path, headers={}, **form):
+def ask(method, path, headers={}, body=None):
     """The status and the text of an answer."""
     connection = http.client.HTTPConnection(address.hostname, address.port, timeout=20)
-    connection.request(method, path, urllib.parse.urlencode(form) if form else None, headers)
+    connection.request(method, path, body, headers)
     answer = connection.getresponse()
     return answer.status, answer.read().decode()
+
+
+def drop(name, headers=own):
+    """The same, after a file of that name was dropped."""
+    body = f'--x\r\nContent-Disposition: form-data; name="file"; filename="{name}"\r\n\r\ny\r\n--x--\r\n'
+    return ask("POST", root + "drop", {**headers, "Content-Type": "multipart/form-data; boundary=x"}, body)
 
 
 def connect(**more):
@@ -38,7 +44,7 @@ def look(**more):
 
 
 class Page:
-    """A page that takes messages and pictures."""
+    """A page that says what it wants, and takes messages and pictures."""
 
     def __init__(self):
         self.connection = connect()
@@ -46,8 +52,12 @@ class Page:
         while self.file.readline() != b"\r\n":
             pass
 
+    def say(self, *parts):
+        text = "\n".join(map(str, parts)).encode()
+        self.connection.sendall(bytes([0x81, 0x80 | len(text)]) + b"\0\0\0\0" + text)
+
     def message(self):
-        """A state or another message, or the six numbers of a picture, which is thanked for."""
+        """A state or another message, or the six numbers of a picture."""
         kind, size = self.file.read(2)
         for short, bytes_ in (126, 2), (127, 8):
             if size == short:
@@ -58,7 +68,6 @@ class Page:
             return json.loads(data)
         if kind & 15 != 2:  # a ping
             return None
-        self.connection.sendall(bytes([0x81, 0x84]) + b"\0\0\0\0more")
         return struct.unpack("<6I", data[:24])
 
     def until(self, true):
@@ -66,9 +75,18 @@ class Page:
             pass
         return message
 
+    def state(self):
+        return self.until(lambda m: isinstance(m, dict) and "state" in m)["state"]
+
     def draft(self, generation):
         """The number of a draft of the settings."""
+        self.say("paint", generation, 1, 0, 0, "")
         return self.until(lambda m: isinstance(m, tuple) and m[0] == 1 and m[1] == generation)[2]
+
+    def choose(self, section="defaults", key="carry", value="0.5"):
+        """Words with which it is refused; "" if it is not."""
+        self.say("choose", section, key, value)
+        return self.until(lambda m: isinstance(m, dict) and {"refused", "chosen"} & set(m)).get("refused", "")
 
 
 def leave(connections):
@@ -94,10 +112,6 @@ def flood():
     leave(many)
 
 
-def choose(headers=own, section="defaults", key="carry", value="0.5"):
-    return ask("POST", root + "choice", headers, section=section, key=key, value=value)[0]
-
-
 def is_open(connection):
     """True if the server has not closed a connection on which no request was sent."""
     connection.setblocking(False)
@@ -114,45 +128,51 @@ def tell(sentence, good):
 if "flood" in sys.argv:
     flood()
     page = Page()
-    tell("a page has pictures after more connections than descriptors", page.until(lambda m: isinstance(m, tuple)))
-    status, words = ask("POST", root + "drop?name=bad.json&first=1&last=1", own, x="y")
-    tell("an animation without frames is refused with its words", status == 400 and words == "no player\n")
-    status = ask("POST", root + "drop?name=good.lottie&first=1&last=1", own, x="y")[0]
+    generation = page.state()["generation"]
+    tell("a page has pictures after more connections than descriptors", page.draft(generation) == 0)
+    status = drop("bad.json")[0]
+    page.say("paint", page.state()["generation"], 1, 0, 0, "")
+    words = page.until(lambda m: "reverted" in m)["reverted"]
+    tell("an animation without frames is refused with its words", status == 200 and words == "no player")
+    status = drop("good.lottie")[0]
+    page.say("paint", page.state()["generation"], 1, 0, 0, "")
     tell("one with frames is shown", status == 200 and page.until(lambda m: "film" in m)["film"]["numbers"] == [7])
     sys.exit()
+page = Page()
 tell("the page is there", ask("GET", root)[0] == 200 and "inspect" not in ask("GET", root)[1])
-tell("its address has a secret", ask("GET", "/")[0] == 404 and ask("GET", "/0000/options")[0] == 404 and len(root) > 30)
+tell("its address has a secret", ask("GET", "/")[0] == 404 and ask("GET", "/0000/")[0] == 404 and len(root) > 30)
 tell("a name that leads here from elsewhere is refused", ask("GET", root, {"Host": f"evil.example:{address.port}"})[0] == 403)
 tell("so is another port", ask("GET", root, {"Host": "127.0.0.1:1"})[0] == 403)
 tell("localhost is a name of its own", ask("GET", root, {"Host": f"localhost:{address.port}"})[0] == 200)
-tell("a choice without an origin is refused", choose({"Content-Type": own["Content-Type"]}) == 403)
-tell("so is one from another site", choose({**own, "Origin": "http://evil.example"}) == 403)
-tell("and a page of another site that reads", ask("GET", root + "options", {"Origin": "null"})[0] == 403)
-tell("an output cannot be chosen", choose(section="project", key="output", value="/tmp/x") == 400)
-tell("nor an option of the command line alone", choose(section="project", key="dump", value="/tmp/x") == 400)
-tell("nor a key that does not exist", choose(key="carri") == 400)
-tell("nor a value of two lines", choose(value="1\noutput = x") == 400 and choose(section="region a]\n[project") == 400)
-tell("a choice is not read by GET", ask("GET", root + "choice")[0] == 404)
-tell("a large body is refused", ask("POST", root + "choice", own, value="x" * 100000)[0] == 413)
-tell("a value of the wrong kind is refused with its words", "much" in ask("POST", root + "choice", own, section="defaults",
-     key="carry", value="much")[1])
+tell("a file without an origin is refused", drop("a.svg", {})[0] == 403)
+tell("so is one from another site", drop("a.svg", {"Origin": "http://evil.example"})[0] == 403)
+tell("and a page of another site that reads", ask("GET", root, {"Origin": "null"})[0] == 403)
+tell("an output cannot be chosen", page.choose("project", "output", "/tmp/x"))
+tell("nor an option of the command line alone", page.choose("project", "dump", "/tmp/x"))
+tell("nor a key that does not exist", page.choose(key="carri"))
+tell("nor a value of two lines", page.choose(value="1\noutput = x") and page.choose("region a]\n[project"))
+tell("nor a section of two", page.choose("region a]\r[project"))
+tell("a large body is refused", ask("POST", root, own, "x" * 100000)[0] == 413)
+tell("a value of the wrong kind is refused with its words", "much" in page.choose(value="much"))
 tell("the page sees pictures", "state" in look())
 tell("that of another site does not", "state" not in look(Origin="http://evil.example"))
-tell("a file that is no drawing is refused", ask("POST", root + "drop?name=a.sh&first=1&last=1", own, x="y")[0] == 400 and
-     ask("POST", root + "drop?name=../a.svg&first=1&last=1", own, x="y")[0] == 400)
+tell("a file that is no drawing is refused", drop("a.sh")[0] == 400 and drop(".a.svg")[0] == 400)
+tell("so is a form without files", ask("POST", root + "drop", own, "x")[0] == 400)
+page.connection.close()
 many = [socket.create_connection((address.hostname, address.port), 20) for _ in range(100)]
 end = time.monotonic() + 20
-while sum(map(is_open, many)) > 64 and time.monotonic() < end:
+while sum(map(is_open, many)) > 24 and time.monotonic() < end:
     time.sleep(0.05)
-few = sum(map(is_open, many)) <= 64
+few = sum(map(is_open, many)) <= 24
 leave(many)
-tell("of a hundred connections at most 64 stay open, and the others do no harm", few)
+tell("of a hundred connections at most 24 stay open, and the others do no harm", few)
 pages = [Page(), Page()]
-generations = [page.until(lambda m: "state" in m)["state"]["generation"] for page in pages]
-tell("two pages have one state", generations[0] == generations[1])
-answer = ask("POST", root + "choice", own, section="defaults", key="tint", value="#123456")[1]
-tell("a choice of one is drafted for both", all(page.draft(int(answer)) >= 0 for page in pages))
+states = [page.state() for page in pages]
+tell("two pages have one state", states[0] == states[1])
+tell("none of them changed the config", states[0]["config"].count("=") == 2)
+pages[0].say("choose", "defaults", "tint", "#123456")
+generation = pages[1].state()["generation"]
+tell("a choice of one is drafted for both", all(page.draft(generation) >= 0 for page in pages))
 pages[0].connection.close()
-answer = ask("POST", root + "choice", own, section="defaults", key="tint", value="")[1]
-tell("one that is left goes on", pages[1].draft(int(answer)) >= 0)
-tell("none of them changed the config", ask("GET", root + "config")[1].count("=") == 2)
+pages[1].say("choose", "defaults", "tint", "")
+tell("one that is left goes on", pages[1].draft(pages[1].state()["generation"]) >= 0)

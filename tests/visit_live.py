@@ -4,7 +4,7 @@
 usage: visit_live.py BROWSER ADDRESS PROFILE FOLDER COMMAND…
 FOLDER has six drawings, w_0001.svg and so on, of a disc over a square. COMMAND paints them for comparison, into full/. Leaves
 the config in kept.conf."""
-import base64, shutil, subprocess, sys, time, urllib.request
+import base64, shutil, subprocess, sys, time
 from browser import Browser
 
 address, folder = sys.argv[2], sys.argv[4]
@@ -56,7 +56,7 @@ def config():
     return browser.ask('byId("config").textContent')
 
 
-REFINED = ("live.pending === 0 && live.state.generation >= live.expected && frames.length && "
+REFINED = ("live.sent.length === 0 && frames.length && "
            "frames.every((f) => f.generation === live.generation && f.level === REFINED)")
 DRAWN = "frames.filter((f) => f.images.after && f.images.map).length === 6"
 
@@ -156,8 +156,8 @@ tell("one that is broken is told", until("byId('told').textContent.includes('w_0
 with open(f"{folder}/w_0004.svg", "w") as file:
     file.write(drawing)
 tell("until it is mended", until(f"!byId('told').textContent && {REFINED}"))
-with open("kept.conf", "wb") as file:
-    file.write(urllib.request.urlopen(address + "config").read())
+with open("kept.conf", "w") as file:
+    file.write(config())
 subprocess.run([*sys.argv[5:], folder, "-q", "-c", "kept.conf", "-o", "full/%d.png"], check=False)
 shutil.rmtree("layers")  # which the config wants as well
 same = True

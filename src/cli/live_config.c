@@ -10,114 +10,66 @@ enum { LONGEST_VALUE = 1000 };
 
 struct FlLiveConfig {
     const FlArgs *args;
+    char *path;
     char *base;         // the file with the options of the command line
-    GPtrArray *choices; // "section\nkey\nvalue"
-    GPtrArray *kept;    // the choices that are known to be good
+    GPtrArray *choices; // "section\nkey\nvalue", in the order in which they were made
+    guint kept;         // of them, which are known to be good
     char *text;         // base with the choices
 };
 
 /* ---- the text ------------------------------------------------------------------------------- */
 
-/* The new value of a key of a section, "project", "defaults" or "region NAME"; to be freed. */
-typedef char *(*MapValue)(const char *section, const char *key, const char *value, void *data);
-
-/* "region  hair " as "region hair". */
-static char *section_name(const char *line)
+/* "[region  hair ]" is the line of "region hair". */
+static bool starts_section(const char *line, const char *section)
 {
     const char *end = strrchr(line, ']');
     g_autofree char *name = g_strndup(line + 1, end ? (size_t)(end - line) - 1 : strlen(line) - 1);
     g_strstrip(name);
-    if (!g_str_has_prefix(name, "region") || !g_ascii_isspace(name[6]))
-        return g_steal_pointer(&name);
-    return g_strdup_printf("region %s", g_strchug(name + 6));
+    const bool region = g_str_has_prefix(name, "region") && g_ascii_isspace(name[6]);
+    return region ? g_str_has_prefix(section, "region ") &&
+                        strcmp(g_strchug(name + 6), section + strlen("region ")) == 0
+                  : strcmp(name, section) == 0;
 }
 
-/* Splits "key = value"; false: the line is something else. */
-static bool split_entry(const char *line, char **key, char **value)
+static bool sets_key(const char *line, const char *key)
 {
-    g_autofree char *text = g_strstrip(g_strdup(line));
-    char *equals = strchr(text, '=');
-    if (*text == '#' || *text == ';' || *text == '[' || !equals || equals == text)
-        return false;
-    *equals = '\0';
-    *key = g_strdup(g_strstrip(text));
-    *value = g_strdup(g_strstrip(equals + 1));
-    return true;
+    const size_t n = strlen(key);
+    return strncmp(line, key, n) == 0 && line[n + strspn(line + n, " \t")] == '=';
 }
 
-/* The text of a config file, fluidy-svg.conf(5), with every value replaced by the result of `map`,
- * which is NULL where the line is dropped; the rest stays as it was written. To be freed. */
-static char *map_values(const char *text, MapValue map, void *data)
-{
-    g_auto(GStrv) lines = g_strsplit(text, "\n", -1);
-    g_autoptr(GString) made = g_string_new(NULL);
-    g_autofree char *section = g_strdup("");
-    for (char **line = lines; *line; line++) {
-        g_autofree char *bare = g_strstrip(g_strdup(*line)), *key = NULL, *value = NULL;
-        if (*bare == '[') {
-            g_free(section);
-            section = section_name(bare);
-        }
-        const bool entry = split_entry(*line, &key, &value);
-        g_autofree char *now = entry ? map(section, key, value, data) : NULL;
-        if (entry && !now)
-            continue;
-        if (!entry || strcmp(now, value) == 0)
-            g_string_append(made, *line);
-        else
-            g_string_append_printf(made, "%s = %s", key, now);
-        g_string_append(made, line[1] ? "\n" : "");
-    }
-    return g_string_free(g_steal_pointer(&made), FALSE);
-}
-
-/* A wanted key, and its place in the text. */
-typedef struct Wanted {
-    const char *section, *key;
-    const char *now; // "": removed
-    bool found;
-} Wanted;
-
-static char *replace(const char *section, const char *key, const char *value, void *data)
-{
-    Wanted *wanted = data;
-    if (strcmp(section, wanted->section) != 0 || strcmp(key, wanted->key) != 0)
-        return g_strdup(value);
-    wanted->found = true;
-    return *wanted->now ? g_strdup(wanted->now) : NULL;
-}
-
-/* Behind the line of the section, or behind a new one at the end. */
-static char *add_entry(const char *text, const Wanted *wanted)
-{
-    g_auto(GStrv) lines = g_strsplit(text, "\n", -1);
-    g_autoptr(GString) made = g_string_new(NULL);
-    bool added = false;
-    for (char **line = lines; *line; line++) {
-        g_autofree char *bare = g_strstrip(g_strdup(*line));
-        g_autofree char *section = *bare == '[' ? section_name(bare) : NULL;
-        g_string_append_printf(made, "%s%s", *line, line[1] ? "\n" : "");
-        if (added || g_strcmp0(section, wanted->section) != 0)
-            continue;
-        g_string_append_printf(made, "%s%s = %s%s", line[1] ? "" : "\n", wanted->key, wanted->now,
-                               line[1] ? "\n" : "");
-        added = true;
-    }
-    if (!added)
-        g_string_append_printf(made, "%s%s[%s]\n%s = %s\n",
-                               made->len && !g_str_has_suffix(made->str, "\n") ? "\n" : "",
-                               made->len ? "\n" : "", wanted->section, wanted->key, wanted->now);
-    return g_string_free(g_steal_pointer(&made), FALSE);
-}
-
-/* Sets a key; "" removes it. A missing section is added at the end. No argument contains a line
- * feed, and the section contains no bracket. */
+/* Sets a key of a section, "project", "defaults" or "region NAME", in the text of a config file,
+ * fluidy-svg.conf(5); "" removes it. A missing section is added at the end, and the rest stays as
+ * it was written. No argument contains a line feed, and the section contains no bracket. */
 static void set(char **text, const char *section, const char *key, const char *value)
 {
-    Wanted wanted = {section, key, value, false};
-    g_autofree char *made = map_values(*text, replace, &wanted);
+    g_auto(GStrv) lines = g_strsplit(*text, "\n", -1);
+    g_autoptr(GPtrArray) made = g_ptr_array_new();
+    g_autofree char *entry = g_strdup_printf("%s = %s", key, value);
+    g_autofree char *head = g_strdup_printf("[%s]", section);
+    bool inside = false;
+    int at = -1; // of the entry: behind the line of the section, or in place of the old one
+    for (char **line = lines; *line; line++) {
+        g_autofree char *bare = g_strstrip(g_strdup(*line));
+        const bool starts = *bare == '[';
+        inside = starts ? starts_section(bare, section) : inside;
+        const bool old = inside && sets_key(bare, key);
+        if (!old)
+            g_ptr_array_add(made, *line);
+        if (inside && (starts || old))
+            at = (int)made->len;
+    }
+    if (*value && at < 0) {
+        if (*(char *)made->pdata[made->len - 1])
+            g_ptr_array_add(made, (gpointer) "");
+        g_ptr_array_add(made, head);
+        at = (int)made->len;
+        g_ptr_array_add(made, (gpointer) "");
+    }
+    if (*value)
+        g_ptr_array_insert(made, at, entry);
+    g_ptr_array_add(made, NULL);
     g_free(*text);
-    *text = wanted.found || !*value ? g_steal_pointer(&made) : add_entry(made, &wanted);
+    *text = g_strjoinv("\n", (char **)made->pdata);
 }
 
 /* ---- paths ---------------------------------------------------------------------------------- */
@@ -154,20 +106,6 @@ static bool is_output(const FlOption *option)
     return option->scope == FL_SCOPE_RENDER && option->type == FL_OPTION_PATH;
 }
 
-static char *make_portable(const char *section, const char *key, const char *value, void *data)
-{
-    const FlOption *option = option_of(section, key);
-    return option ? absolute(option, value, NULL) : g_strdup(value);
-}
-
-/* The config of that name is mentioned by the program if it lies beside the drawing. */
-static char *path_beside(const char *input)
-{
-    g_autofree char *folder =
-        g_file_test(input, G_FILE_TEST_IS_DIR) ? g_strdup(input) : g_path_get_dirname(input);
-    return g_build_filename(folder, "fluidy-svg.conf", NULL);
-}
-
 /* The config that choices are written into; a look is not, but included. */
 static const char *given_config(const FlLiveConfig *config)
 {
@@ -175,33 +113,30 @@ static const char *given_config(const FlLiveConfig *config)
     return given && !fl_look_named(given) ? given : NULL;
 }
 
-char *fl_live_config_save(const FlLiveConfig *config, bool replace, GError **error)
+/* That of the command line; else the program mentions one of this name beside the drawing. */
+static char *path_of(const FlLiveConfig *config)
 {
-    const char *given = given_config(config);
-    g_autofree char *path = given ? g_strdup(given) : path_beside(config->args->render.inputs[0]);
-    g_autofree char *portable = map_values(config->text, make_portable, NULL);
-    const char *text = given ? config->text : portable;
-    if (!replace && g_file_test(path, G_FILE_TEST_EXISTS)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s is there already", path);
-        return NULL;
+    const char *given = given_config(config), *input = config->args->render.inputs[0];
+    g_autofree char *folder =
+        g_file_test(input, G_FILE_TEST_IS_DIR) ? g_strdup(input) : g_path_get_dirname(input);
+    return given ? g_strdup(given) : g_build_filename(folder, "fluidy-svg.conf", NULL);
+}
+
+const char *fl_live_config_path(const FlLiveConfig *config)
+{
+    return config->path;
+}
+
+bool fl_live_config_save(const FlLiveConfig *config, bool replace, GError **error)
+{
+    if (!replace && g_file_test(config->path, G_FILE_TEST_EXISTS)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s is there already", config->path);
+        return false;
     }
-    return g_file_set_contents(path, text, -1, error) ? g_steal_pointer(&path) : NULL;
+    return g_file_set_contents(config->path, config->text, -1, error);
 }
 
 /* ---- the file and the command line ---------------------------------------------------------- */
-
-/* The style of a film without any: 01, else the first one found. */
-static char *first_style(void)
-{
-    g_autoptr(GPtrArray) styles = fl_style_list();
-    const char *name = NULL;
-    for (guint k = 0; k < styles->len; k++) {
-        const FlStyleEntry *style = styles->pdata[k];
-        if (!name || strcmp(style->name, "01") == 0)
-            name = style->name;
-    }
-    return g_strdup(name);
-}
 
 /* Options override the config, so a choice in the page could not override them. */
 static void add_command_line(char **text, const FlArgs *args)
@@ -223,12 +158,15 @@ static void add_command_line(char **text, const FlArgs *args)
     }
 }
 
-static bool wants_style(const FlArgs *args)
+/* A film without any style gets the first one. */
+static void add_style(char **text, const FlArgs *args)
 {
-    bool named = args->render.config != NULL;
+    g_autoptr(GPtrArray) styles = fl_style_list();
+    bool named = args->render.config || styles->len == 0;
     for (size_t k = 0; k < args->render.n_settings; k++)
         named = named || strcmp(args->render.settings[k].name, "style") == 0;
-    return !named;
+    if (!named)
+        set(text, "defaults", "style", ((const FlStyleEntry *)styles->pdata[0])->name);
 }
 
 static bool read_base(FlLiveConfig *config, GError **error)
@@ -250,31 +188,33 @@ static bool read_base(FlLiveConfig *config, GError **error)
         g_autofree char *look = g_canonicalize_filename(path, NULL);
         set(&text, "project", "include", look);
     }
-    g_autofree char *style = wants_style(config->args) ? first_style() : NULL;
-    if (style)
-        set(&text, "defaults", "style", style);
+    add_style(&text, config->args);
     add_command_line(&text, config->args);
     g_free(config->base);
     config->base = g_steal_pointer(&text);
     return true;
 }
 
+static void apply(FlLiveConfig *config, const char *choice)
+{
+    g_auto(GStrv) part = g_strsplit(choice, "\n", 3);
+    set(&config->text, part[0], part[1], part[2]);
+}
+
 static void apply_choices(FlLiveConfig *config)
 {
     g_free(config->text);
     config->text = g_strdup(config->base);
-    for (guint k = 0; k < config->choices->len; k++) {
-        g_auto(GStrv) choice = g_strsplit(config->choices->pdata[k], "\n", 3);
-        set(&config->text, choice[0], choice[1], choice[2]);
-    }
+    for (guint k = 0; k < config->choices->len; k++)
+        apply(config, config->choices->pdata[k]);
 }
 
 FlLiveConfig *fl_live_config_new(const FlArgs *args, GError **error)
 {
     g_autoptr(FlLiveConfig) config = g_new0(FlLiveConfig, 1);
     config->args = args;
+    config->path = path_of(config);
     config->choices = g_ptr_array_new_with_free_func(g_free);
-    config->kept = g_ptr_array_new_with_free_func(g_free);
     return fl_live_config_reload(config, error) ? g_steal_pointer(&config) : NULL;
 }
 
@@ -296,7 +236,7 @@ void fl_live_config_free(FlLiveConfig *config)
     if (!config)
         return;
     g_ptr_array_unref(config->choices);
-    g_ptr_array_unref(config->kept);
+    g_free(config->path);
     g_free(config->base);
     g_free(config->text);
     g_free(config);
@@ -319,24 +259,17 @@ static bool is_section(const char *section)
            strcmp(section, "project") == 0 || strcmp(section, "defaults") == 0;
 }
 
-static void *copy(const void *choice, void *data)
-{
-    return g_strdup(choice);
-}
-
 void fl_live_config_keep(FlLiveConfig *config)
 {
-    g_ptr_array_unref(config->kept);
-    config->kept = g_ptr_array_copy(config->choices, copy, NULL);
+    config->kept = config->choices->len;
 }
 
 bool fl_live_config_revert(FlLiveConfig *config)
 {
-    g_autofree char *before = g_strdup(config->text);
-    g_ptr_array_unref(config->choices);
-    config->choices = g_ptr_array_copy(config->kept, copy, NULL);
+    const bool changes = config->choices->len > config->kept;
+    g_ptr_array_set_size(config->choices, (int)config->kept);
     apply_choices(config);
-    return strcmp(before, config->text) != 0;
+    return changes;
 }
 
 /* Checks the value without the drawing. */
@@ -359,44 +292,13 @@ bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char
     }
     if (!check_value(option, value, error))
         return false;
-    g_autofree char *name = g_strdup_printf("%s\n%s\n", section, key);
-    for (guint k = config->choices->len; k-- > 0;)
-        if (g_str_has_prefix(config->choices->pdata[k], name))
-            g_ptr_array_remove_index(config->choices, k);
-    g_ptr_array_add(config->choices, g_strconcat(name, value, NULL));
-    apply_choices(config);
+    char *choice = g_strdup_printf("%s\n%s\n%s", section, key, value);
+    g_ptr_array_add(config->choices, choice);
+    apply(config, choice);
     return true;
 }
 
 /* ---- for the page --------------------------------------------------------------------------- */
-
-typedef struct Listing {
-    GString *json;
-    char *section; // of the last entry
-} Listing;
-
-static char *list_entry(const char *section, const char *key, const char *value, void *data)
-{
-    Listing *listing = data;
-    if (g_strcmp0(section, listing->section) != 0) {
-        g_string_append(listing->json, listing->section ? "}," : "");
-        fl_json_string(listing->json, section);
-        g_string_append(listing->json, ":{");
-        g_free(listing->section);
-        listing->section = g_strdup(section);
-    }
-    fl_json_text(listing->json, key, value);
-    return g_strdup(value);
-}
-
-void fl_live_config_json(const FlLiveConfig *config, GString *json)
-{
-    Listing listing = {json, NULL};
-    g_string_append_c(json, '{');
-    g_free(map_values(config->text, list_entry, &listing));
-    g_string_append(json, listing.section ? "}}" : "}");
-    g_free(listing.section);
-}
 
 /* The form of a value, for the page's controls: words come from the value's own description. */
 static const char *kind_of(const FlOption *option)
@@ -450,7 +352,7 @@ static void append_style(GString *json, const FlStyleEntry *style)
 char *fl_live_config_options(void)
 {
     g_autoptr(GPtrArray) styles = fl_style_list();
-    GString *json = g_string_new("{\"options\":[");
+    GString *json = g_string_new("{\"controls\":{\"options\":[");
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *option = fl_option_at(i);
         if (option->section != FL_SECTION_NONE && !is_output(option))
@@ -459,6 +361,6 @@ char *fl_live_config_options(void)
     g_string_append(json, "],\"styles\":[");
     for (guint k = 0; k < styles->len; k++)
         append_style(json, styles->pdata[k]);
-    g_string_append(json, "]}\n");
+    g_string_append(json, "]}}");
     return g_string_free(json, FALSE);
 }

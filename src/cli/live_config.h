@@ -18,7 +18,7 @@ bool fl_live_config_reload(FlLiveConfig *config, GError **error);
 
 /**
  * Makes a choice: the value of an option in "project", "defaults" or "region NAME"; "" removes the
- * choice. Returns: false with FL_ERROR_USAGE, which names the expected values.
+ * value. Returns: false with FL_ERROR_USAGE, which names the expected values.
  */
 bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char *key,
                            const char *value, GError **error);
@@ -26,25 +26,20 @@ bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char
 /** The text of the config. Borrowed until the next change. */
 const char *fl_live_config_text(const FlLiveConfig *config);
 
-/**
- * Writes the text to the user's config file; without one, to fluidy-svg.conf beside the drawing,
- * with absolute paths of styles.
- *
- * replace: an existing file is replaced. Returns: the file's path, to be freed; NULL with
- * FL_ERROR_EXISTS or an error of the file.
- */
-char *fl_live_config_save(const FlLiveConfig *config, bool replace, GError **error);
+/** The user's config file; without one, fluidy-svg.conf beside the drawing. Borrowed. */
+const char *fl_live_config_path(const FlLiveConfig *config);
+
+/** Writes the text there. replace: an existing file is replaced. Returns: false with
+ * FL_ERROR_EXISTS or an error of the file. */
+bool fl_live_config_save(const FlLiveConfig *config, bool replace, GError **error);
 
 /** The choices so far are good ones. */
 void fl_live_config_keep(FlLiveConfig *config);
 
-/** Takes back the choices since fl_live_config_keep(). Returns: true if the text has changed. */
+/** Takes back the choices since fl_live_config_keep(). Returns: true if there are any. */
 bool fl_live_config_revert(FlLiveConfig *config);
 
-/** Appends {"section":{"key":"value",…},…}. */
-void fl_live_config_json(const FlLiveConfig *config, GString *json);
-
-/** The available choices, from the table of options: {"options":[…],"styles":[…]}. To be freed. */
+/** The available choices: {"controls":{"options":[…],"styles":[…]}}. To be freed. */
 char *fl_live_config_options(void);
 
 void fl_live_config_free(FlLiveConfig *config); // NULL is fine

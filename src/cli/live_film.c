@@ -3,6 +3,8 @@
 #include "base/json.h"
 #include "params/options.h"
 
+#include <gio/gio.h>
+#include <signal.h>
 #include <string.h>
 
 enum { DRAFT_SIDE = 500, TELL_MS = 100, HEAD_NUMBERS = 6 };
@@ -13,17 +15,17 @@ struct FlLiveFilm {
     GThread *thread;
     GAsyncQueue *jobs; // FlLiveJob; one of generation -1 ends the thread
     GPtrArray *styles; // FlStyleEntry
+    GCancellable *end; // of fluidy-frames
     gint wanted;       // generation; atomic
-    GMutex lock;       // of the settings
-    char **inputs, *path, *text;
-    bool anew; // the inputs are read again
 
     /* Of the thread alone. */
     FlFilm *film;
     FlLiveJob *job;
-    char *facts; // that were told last
-    int set;     // generation of the film's settings
-    gint64 told; // last progress, microseconds
+    FlLiveJob *settings; // the last job that brought some
+    int set;             // generation of those that the film has
+    int n_opened;        // films so far
+    char *facts;         // that were told last
+    gint64 told;         // last progress, microseconds
 };
 
 /* ---- the options of the command line ----------------------------------------------------------
@@ -77,10 +79,9 @@ static bool set_options(FlLiveFilm *film, GError **error)
 /* A line for the main thread, or a job that has ended. */
 typedef struct Line {
     FlLiveFilm *film;
-    FlLiveJob *job;                             // NULL: it is a line
-    void (*take)(const char *text, void *data); // NULL: it is progress
+    FlLiveJob *job; // NULL: it is a line
+    void (*take)(const char *text, void *data);
     char *text;
-    int done, total;
 } Line;
 
 static gboolean say(void *data)
@@ -89,10 +90,8 @@ static gboolean say(void *data)
     const FlLiveCalls *calls = &line->film->calls;
     if (line->job)
         calls->done(line->job, calls->data);
-    else if (line->take)
-        line->take(line->text, calls->data);
     else
-        calls->progress(line->text, line->done, line->total, calls->data);
+        line->take(line->text, calls->data);
     g_free(line->text);
     return G_SOURCE_REMOVE;
 }
@@ -114,8 +113,13 @@ static bool on_progress(const FlProgress *progress, void *data)
     const gint64 now = g_get_monotonic_time();
     const bool known = film->job->work == FL_LIVE_DRAFT && strcmp(progress->stage, "paint") != 0;
     if (known && now - film->told > (gint64)TELL_MS * 1000) {
+        GString *json = g_string_new("{");
         film->told = now;
-        send(&(Line){film, NULL, NULL, g_strdup(progress->stage), progress->done, progress->total});
+        fl_json_text(json, "progress", progress->stage);
+        fl_json_number(json, "done", progress->done, true);
+        fl_json_number(json, "total", progress->total, true);
+        g_string_append_c(json, '}');
+        send(&(Line){film, NULL, film->calls.progress, g_string_free(json, FALSE)});
     }
     return !was_stopped(film);
 }
@@ -136,8 +140,35 @@ static void on_reads(const char *path, void *data)
 /* ---- a job ------------------------------------------------------------------------------------
  */
 
-/* Brings the film to the settings of the job. */
-static bool follow(FlLiveFilm *film, GError **error)
+/* Makes frames of a Lottie animation, unless they are there; *input becomes their folder. */
+static bool make_frames(FlLiveFilm *film, char **input, GError **error)
+{
+    g_autofree char *folder = g_strconcat(*input, ".frames", NULL), *said = NULL;
+    g_autoptr(GSubprocess) process = NULL;
+    if (!g_file_test(folder, G_FILE_TEST_IS_DIR)) {
+        process =
+            g_subprocess_new(G_SUBPROCESS_FLAGS_STDOUT_SILENCE | G_SUBPROCESS_FLAGS_STDERR_PIPE,
+                             error, "fluidy-frames", *input, "-o", folder, NULL);
+        if (!process) {
+            g_prefix_error(error,
+                           "frames of it are made by fluidy-frames; see fluidy-exports(7): ");
+            return false;
+        }
+        if (!g_subprocess_communicate_utf8(process, NULL, film->end, NULL, &said, error)) {
+            g_subprocess_send_signal(process, SIGTERM);
+            return false;
+        }
+        if (!g_subprocess_get_successful(process)) {
+            g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", g_strstrip(said));
+            return false;
+        }
+    }
+    g_free(*input);
+    *input = g_steal_pointer(&folder);
+    return true;
+}
+
+static bool open_film(FlLiveFilm *film, GError **error)
 {
     const FlFilmCalls calls = {.size = sizeof calls,
                                .progress = on_progress,
@@ -145,28 +176,40 @@ static bool follow(FlLiveFilm *film, GError **error)
                                .stopped = was_stopped,
                                .reads = on_reads,
                                .data = film};
-    if (film->film && film->set == film->job->generation)
-        return true;
-    g_mutex_lock(&film->lock);
-    g_autofree char *path = g_strdup(film->path), *text = g_strdup(film->text);
-    if (film->anew)
-        g_clear_pointer(&film->film, fl_film_close);
-    film->anew = false;
-    const bool opens = !film->film;
-    if (opens)
-        film->film = fl_film_open((const char *const *)film->inputs);
-    g_mutex_unlock(&film->lock);
-    if (opens) {
-        g_clear_pointer(&film->facts, g_free);
-        fl_film_set_calls(film->film, &calls);
-    }
-    if ((opens && !set_options(film, error)) || !fl_film_set_config(film->film, path, text, error))
+    char **inputs = film->settings->inputs;
+    const bool lottie =
+        g_str_has_suffix(inputs[0], ".json") || g_str_has_suffix(inputs[0], ".lottie");
+    if (lottie && !make_frames(film, &inputs[0], error))
         return false;
-    film->set = film->job->generation;
+    film->film = fl_film_open((const char *const *)inputs);
+    film->n_opened++;
+    fl_film_set_calls(film->film, &calls);
+    return set_options(film, error);
+}
+
+/* Brings the film to the settings. */
+static bool follow(FlLiveFilm *film, GError **error)
+{
+    const FlLiveJob *settings = film->settings;
+    if (film->set == settings->generation)
+        return true;
+    if ((!film->film && !open_film(film, error)) ||
+        !fl_film_set_config(film->film, settings->path, settings->text, error))
+        return false;
+    film->set = settings->generation;
     return true;
 }
 
-static void add_picture(FlLiveJob *job, FlLivePicture kind, int number, const FlFilmFrame *frame)
+static void take_settings(FlLiveFilm *film, FlLiveJob *settings)
+{
+    if (settings->anew)
+        g_clear_pointer(&film->film, fl_film_close);
+    if (film->settings)
+        fl_live_job_free(film->settings);
+    film->settings = settings;
+}
+
+static void add_picture(FlLiveJob *job, FlLiveWork kind, int number, const FlFilmFrame *frame)
 {
     const size_t bytes = 4 * (size_t)frame->width * (size_t)frame->height;
     const int head[HEAD_NUMBERS] = {(int)kind, job->generation, number, frame->width,
@@ -185,7 +228,7 @@ static void append_region(GString *json, const FlFilmRegion *region)
     g_autofree char *colour =
         g_strdup_printf("#%02x%02x%02x", region->colour[0], region->colour[1], region->colour[2]);
     g_autofree char *style = region->style ? g_path_get_basename(region->style) : NULL;
-    g_string_append(json, g_str_has_suffix(json->str, "[") ? "{" : ",{");
+    fl_json_begin(json, NULL, '{');
     fl_json_text(json, "name", region->name);
     fl_json_text(json, "label", region->layer);
     fl_json_text(json, "paint", region->paint);
@@ -208,6 +251,7 @@ static char *facts_of(FlLiveFilm *film, const FlFilmFrame *frame)
     fl_json_number(json, "width", width, true);
     fl_json_number(json, "height", height, true);
     fl_json_number(json, "fps", info->fps, true);
+    fl_json_number(json, "read", film->n_opened + fl_film_stats(film->film)->n_read, true);
     g_string_append_printf(json, ",\"transparent\":%s,\"numbers\":[",
                            info->transparent ? "true" : "false");
     for (int f = 0; f < info->n_frames; f++)
@@ -225,58 +269,57 @@ static bool make_draft(FlLiveFilm *film, GError **error)
     const FlFilmInfo *info = fl_film_draft_info(film->film, error);
     if (!info)
         return false;
-    job->frame = MIN(job->frame, info->n_frames - 1);
+    job->frame = CLAMP(job->frame, 0, info->n_frames - 1);
     const FlFilmFrame *frame = fl_film_draft(film->film, job->frame, error);
     if (!frame)
         return false;
-    add_picture(job, FL_LIVE_PAINT_DRAFT, job->frame, frame);
+    add_picture(job, FL_LIVE_DRAFT, job->frame, frame);
     g_autofree char *facts = facts_of(film, frame);
     if (g_strcmp0(facts, film->facts) != 0) {
+        job->facts = g_strdup(facts);
         g_free(film->facts);
-        film->facts = g_strdup(facts);
-        job->facts = g_steal_pointer(&facts);
-        job->n_frames = info->n_frames;
+        film->facts = g_steal_pointer(&facts);
     }
-    const FlFilmFrame *drawing =
-        job->with_drawing ? fl_film_drawing(film->film, job->frame, error) : NULL;
-    if (drawing)
-        add_picture(job, FL_LIVE_DRAWING, job->frame, drawing);
-    const FlFilmFrame *map = drawing ? fl_film_map(film->film, job->frame, error) : NULL;
-    if (map)
-        add_picture(job, FL_LIVE_MAP, job->frame, map);
-    return map || !job->with_drawing;
+    return true;
 }
 
 /* The film of the draft has the style for the moment. */
 static bool make_sample(FlLiveFilm *film, GError **error)
 {
     const FlLiveJob *job = film->job;
-    const FlStyleEntry *style = film->styles->pdata[job->style];
+    const FlStyleEntry *style =
+        film->styles->pdata[CLAMP(job->style, 0, (int)film->styles->len - 1)];
     if (!fl_film_set(film->film, job->region, "style", style->name, error))
         return false;
     const FlFilmFrame *frame = fl_film_draft(film->film, job->frame, error);
     if (frame)
-        add_picture(film->job, FL_LIVE_PAINT_SAMPLE, job->style, frame);
+        add_picture(film->job, FL_LIVE_SAMPLE, job->style, frame);
     return fl_film_set(film->film, job->region, "style", NULL, frame ? error : NULL) && frame;
+}
+
+static bool make_picture(FlLiveFilm *film, FlLiveWork kind, GError **error)
+{
+    const FlFilmFrame *frame =
+        (kind == FL_LIVE_FRAME     ? fl_film_frame
+         : kind == FL_LIVE_DRAWING ? fl_film_drawing
+                                   : fl_film_map)(film->film, film->job->frame, error);
+    if (frame)
+        add_picture(film->job, kind, film->job->frame, frame);
+    return frame;
 }
 
 static bool do_job(FlLiveFilm *film, GError **error)
 {
-    FlLiveJob *job = film->job;
+    const FlLiveWork work = film->job->work;
     if (was_stopped(film)) {
         g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "the settings have changed");
         return false;
     }
-    if (!follow(film, error))
-        return false;
-    if (job->work == FL_LIVE_DRAFT)
-        return make_draft(film, error);
-    if (job->work == FL_LIVE_SAMPLE)
-        return make_sample(film, error);
-    const FlFilmFrame *frame = fl_film_frame(film->film, job->frame, error);
-    if (frame)
-        add_picture(job, FL_LIVE_PAINT_FRAME, job->frame, frame);
-    return frame;
+    return follow(film, error) &&
+           (work == FL_LIVE_DRAFT    ? make_draft(film, error)
+            : work == FL_LIVE_SAMPLE ? make_sample(film, error)
+                                     : make_picture(film, work, error)) &&
+           (work != FL_LIVE_DRAWING || make_picture(film, FL_LIVE_MAP, error));
 }
 
 /* ---- the thread -------------------------------------------------------------------------------
@@ -285,21 +328,19 @@ static bool do_job(FlLiveFilm *film, GError **error)
 static void *run(void *data)
 {
     FlLiveFilm *film = data;
-    for (;;) {
-        FlLiveJob *job = film->job = g_async_queue_pop(film->jobs);
-        if (job->generation < 0) {
-            fl_live_job_free(job);
-            break;
+    while ((film->job = g_async_queue_pop(film->jobs))->generation >= 0) {
+        FlLiveJob *job = film->job;
+        if (job->inputs) {
+            take_settings(film, job);
+            continue;
         }
-        const int read = film->film ? fl_film_stats(film->film)->n_read : 0;
-        const bool done = do_job(film, &job->error);
-        job->reread =
-            job->work == FL_LIVE_DRAFT && film->film && fl_film_stats(film->film)->n_read != read;
-        if (!done && !job->error)
+        if (!do_job(film, &job->error) && !job->error)
             g_set_error(&job->error, FL_ERROR, FL_ERROR_NO_MEMORY, "there is not enough memory");
         send(&(Line){film, job});
     }
     g_clear_pointer(&film->film, fl_film_close);
+    fl_live_job_free(film->settings);
+    fl_live_job_free(film->job);
     return NULL;
 }
 
@@ -309,8 +350,8 @@ FlLiveFilm *fl_live_film_new(const FlArgs *args, const FlLiveCalls *calls)
     film->args = args;
     film->calls = *calls;
     film->styles = fl_style_list();
+    film->end = g_cancellable_new();
     film->jobs = g_async_queue_new_full((GDestroyNotify)fl_live_job_free);
-    g_mutex_init(&film->lock);
     film->thread = g_thread_new("film", run, film);
     return film;
 }
@@ -318,30 +359,28 @@ FlLiveFilm *fl_live_film_new(const FlArgs *args, const FlLiveCalls *calls)
 void fl_live_film_set(FlLiveFilm *film, int generation, const char *const *inputs, bool anew,
                       const char *path, const char *text)
 {
-    g_mutex_lock(&film->lock);
-    g_strfreev(film->inputs);
-    g_free(film->path);
-    g_free(film->text);
-    film->inputs = g_strdupv((char **)inputs);
-    film->path = g_strdup(path);
-    film->text = g_strdup(text);
-    film->anew = film->anew || anew;
-    g_mutex_unlock(&film->lock);
+    FlLiveJob *job = g_new(FlLiveJob, 1);
+    *job = (FlLiveJob){.generation = generation,
+                       .inputs = g_strdupv((char **)inputs),
+                       .anew = anew,
+                       .path = g_strdup(path),
+                       .text = g_strdup(text)};
     g_atomic_int_set(&film->wanted, generation);
+    fl_live_film_ask(film, job);
 }
 
-void fl_live_film_ask(FlLiveFilm *film, const FlLiveJob *job)
+void fl_live_film_ask(FlLiveFilm *film, FlLiveJob *job)
 {
-    FlLiveJob *asked = g_new(FlLiveJob, 1);
-    *asked = *job;
-    asked->region = g_strdup(job->region);
-    asked->pictures = g_ptr_array_new_with_free_func((GDestroyNotify)g_bytes_unref);
-    g_async_queue_push(film->jobs, asked);
+    job->pictures = g_ptr_array_new_with_free_func((GDestroyNotify)g_bytes_unref);
+    g_async_queue_push(film->jobs, job);
 }
 
 void fl_live_job_free(FlLiveJob *job)
 {
     g_free(job->region);
+    g_strfreev(job->inputs);
+    g_free(job->path);
+    g_free(job->text);
     g_clear_error(&job->error);
     g_free(job->facts);
     g_clear_pointer(&job->pictures, g_ptr_array_unref);
@@ -353,16 +392,16 @@ void fl_live_film_free(FlLiveFilm *film)
     if (!film)
         return;
     g_atomic_int_set(&film->wanted, -1);
-    fl_live_film_ask(film, &(FlLiveJob){.generation = -1});
+    g_cancellable_cancel(film->end);
+    FlLiveJob *last = g_new0(FlLiveJob, 1);
+    last->generation = -1;
+    fl_live_film_ask(film, last);
     g_thread_join(film->thread);
     while (g_main_context_iteration(NULL, FALSE))
         continue; // the last calls of the thread
     g_async_queue_unref(film->jobs);
     g_ptr_array_unref(film->styles);
-    g_strfreev(film->inputs);
-    g_free(film->path);
-    g_free(film->text);
+    g_object_unref(film->end);
     g_free(film->facts);
-    g_mutex_clear(&film->lock);
     g_free(film);
 }

@@ -4,44 +4,37 @@
 
 #include "args.h"
 
+/** Their numbers are known to the page, as kinds of pictures. */
 typedef enum FlLiveWork {
-    FL_LIVE_DRAFT,  // a frame's draft
-    FL_LIVE_FRAME,  // a frame, equal to the command's
-    FL_LIVE_SAMPLE, // a draft with a style
+    FL_LIVE_DRAFT = 1, // a frame's draft
+    FL_LIVE_FRAME,     // a frame, equal to the command's
+    FL_LIVE_SAMPLE,    // a draft with a style
+    FL_LIVE_DRAWING,   // the drawing without paint, and as FL_LIVE_MAP
+    FL_LIVE_MAP,       // each region in a colour of its own
 } FlLiveWork;
 
-/** Kinds of pictures, as in the page. */
-typedef enum FlLivePicture {
-    FL_LIVE_PAINT_DRAFT = 1,
-    FL_LIVE_PAINT_FRAME,
-    FL_LIVE_PAINT_SAMPLE,
-    FL_LIVE_DRAWING, // without paint
-    FL_LIVE_MAP,     // each region in a colour of its own
-} FlLivePicture;
-
-/** A piece of work, and then its results. */
+/** A piece of work, and then its results; or new settings. */
 typedef struct FlLiveJob {
     FlLiveWork work;
     int frame;           // from 0
-    bool with_drawing;   // of drafts: the drawing and its map as well
-    char *region;        // of a sample; NULL: all regions
     int style;           // of a sample: its index in fl_style_list()
-    void *asker;         // for the caller
+    char *region;        // of a sample; NULL: all regions
     int generation;      // of the settings
+    void *asker;         // for the caller
     GError *error;       // NULL if the job succeeded
-    bool reread;         // the drawing was read
     char *facts;         // of the film, a JSON object; NULL: as before
-    int n_frames;        // of the film, with facts
     GPtrArray *pictures; // GBytes: six numbers of 32 bits, little endian (kind, generation, frame
                          // or style, width, height, 0), then width * height * 4 straight sRGBA
+    char **inputs, *path, *text; // of settings: see fl_live_film_set()
+    bool anew;                   // likewise
 } FlLiveJob;
 
 typedef struct FlLiveFilm FlLiveFilm;
 
-/** Calls, in the default main context, but for `reads`, which come with the job's end. */
+/** Calls, in the default main context. */
 typedef struct FlLiveCalls {
-    void (*done)(FlLiveJob *job, void *data); // takes the job over
-    void (*progress)(const char *stage, int done, int total, void *data);
+    void (*done)(FlLiveJob *job, void *data);         // takes the job over
+    void (*progress)(const char *object, void *data); // JSON
     void (*warning)(const char *message, void *data);
     void (*reads)(const char *path, void *data);
     void *data;
@@ -54,13 +47,14 @@ FlLiveFilm *fl_live_film_new(const FlArgs *args, const FlLiveCalls *calls);
  * Changes the settings from the next job on, and stops what is being done for earlier ones.
  *
  * generation: one that no settings had before. inputs: NULL-terminated; copied; `anew`: they are
- * read again. path, text: see fl_film_set_config().
+ * read again. A lone Lottie animation becomes frames beside it, by fluidy-frames. path, text: see
+ * fl_film_set_config().
  */
 void fl_live_film_set(FlLiveFilm *film, int generation, const char *const *inputs, bool anew,
                       const char *path, const char *text);
 
-/** Adds a copy of the job; calls.done gets the result or the error. */
-void fl_live_film_ask(FlLiveFilm *film, const FlLiveJob *job);
+/** Takes the job over; calls.done gets the result or the error. */
+void fl_live_film_ask(FlLiveFilm *film, FlLiveJob *job);
 
 void fl_live_job_free(FlLiveJob *job);
 

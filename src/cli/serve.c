@@ -2,21 +2,24 @@
 
 #include "base/json.h"
 #include "file_watch.h"
-#include "live_clients.h"
 #include "live_config.h"
 #include "live_drop.h"
-#include "live_socket.h"
+#include "live_film.h"
 #include "params/options.h"
 
 #include <errno.h>
+#include <libsoup/soup.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 enum {
     TICK_MS = 200,
-    LONGEST_BODY = 1 << 16,
-    LONGEST_DROP = 64 << 20,
+    PING_S = 20,
+    SILENT_S = 60,
+    MOST_CONNECTIONS = 24,
+    LONGEST_DROP = 256 << 20,
     SECRET_BYTES = 16,
     MOST_MESSAGES = 50,
 };
@@ -25,14 +28,16 @@ typedef struct Live {
     const FlArgs *args;
     const volatile sig_atomic_t *stop;
     SoupServer *server;
-    FlLiveSocket *socket;
-    char *root;     // "/SECRET/": requests without it are refused
-    char *hosts[2]; // names of this server in a browser
+    GSocketService *service; // hands it connections
+    int n_connections;
+    char *root;       // "/SECRET/": requests without it are refused
+    char *hosts[2];   // names of this server in a browser
+    GPtrArray *pages; // SoupWebsocketConnection
     FlLiveConfig *config;
     FlLiveFilm *film;
-    FlLiveClients *clients;
-    FlLiveDrop *drop;     // files that were dropped on the page; NULL: those of the command line
-    FlLiveDrop *dropping; // files that are on their way
+    char *facts;      // of the film, for pages that come later
+    FlLiveDrop *drop; // files that were dropped on the page; NULL: those of the command line
+    FlLiveDrop *last; // those before, until these are drafted
     FlFileWatch *files;
     GPtrArray *messages; // JSON objects, since the settings are as they are
     int generation;      // counts changes of the config and the files
@@ -40,18 +45,45 @@ typedef struct Live {
     GSubprocess *window; // NULL: none
 } Live;
 
-/* ---- the state of the page --------------------------------------------------------------------
- */
+/* ---- messages to pages ---------------------------------------------------------------------- */
 
-static const char *config_path(const Live *live)
+static void say_to(SoupWebsocketConnection *page, const char *json)
 {
-    const char *path = live->args->render.config;
-    return path ? path : "film.conf";
+    if (soup_websocket_connection_get_state(page) == SOUP_WEBSOCKET_STATE_OPEN)
+        soup_websocket_connection_send_text(page, json);
 }
 
-static char *config_name(const Live *live)
+static void say_to_all(const char *json, void *data)
 {
-    return g_path_get_basename(config_path(live));
+    const Live *live = data;
+    for (guint k = 0; k < live->pages->len; k++)
+        say_to(live->pages->pdata[k], json);
+}
+
+/* {"KIND":"TEXT"}, to be freed. */
+static char *object_of(const char *kind, const char *text)
+{
+    GString *json = g_string_new("{");
+    fl_json_text(json, kind, text);
+    g_string_append_c(json, '}');
+    return g_string_free(json, FALSE);
+}
+
+static void answer_page(SoupWebsocketConnection *page, const char *kind, const char *text)
+{
+    g_autofree char *json = object_of(kind, text);
+    say_to(page, json);
+}
+
+/* To all pages, and to those that come before the settings change. */
+static void tell(Live *live, const char *kind, const char *text)
+{
+    char *json = object_of(kind, text);
+    say_to_all(json, live);
+    if (live->messages->len < MOST_MESSAGES)
+        g_ptr_array_add(live->messages, json);
+    else
+        g_free(json);
 }
 
 static void append_command(GString *json, const Live *live)
@@ -62,7 +94,7 @@ static void append_command(GString *json, const Live *live)
         g_ptr_array_add(words, g_strdup(*input));
     fl_live_film_options(live->args, words);
     g_ptr_array_add(words, g_strdup("-c"));
-    g_ptr_array_add(words, g_strdup(config_path(live)));
+    g_ptr_array_add(words, g_strdup(fl_live_config_path(live->config)));
     for (guint k = 0; k < words->len; k++) {
         const char *word = words->pdata[k];
         const bool plain = strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
@@ -76,36 +108,17 @@ static void append_command(GString *json, const Live *live)
 /* All that the page shows besides the film and its pictures; to be freed. */
 static char *state_of(const Live *live)
 {
-    g_autofree char *name = config_name(live);
+    g_autofree char *name = g_path_get_basename(fl_live_config_path(live->config));
     GString *json = g_string_new("{\"state\":{");
     fl_json_number(json, "generation", live->generation, true);
     fl_json_text(json, "config", fl_live_config_text(live->config));
     fl_json_text(json, "file", name);
     append_command(json, live);
-    g_string_append(json, ",\"settings\":");
-    fl_live_config_json(live->config, json);
     g_string_append(json, ",\"messages\":[");
     for (guint k = 0; k < live->messages->len; k++)
         g_string_append_printf(json, k > 0 ? ",%s" : "%s", (char *)live->messages->pdata[k]);
     g_string_append(json, "]}}");
     return g_string_free(json, FALSE);
-}
-
-static void say_state(Live *live)
-{
-    g_autofree char *state = state_of(live);
-    fl_live_clients_say(live->clients, state);
-}
-
-/* {"KIND":"TEXT"}, to all pages. */
-static void say(Live *live, const char *kind, const char *text, bool stays)
-{
-    g_autoptr(GString) json = g_string_new("{");
-    fl_json_text(json, kind, text);
-    g_string_append_c(json, '}');
-    fl_live_clients_say(live->clients, json->str);
-    if (stays && live->messages->len < MOST_MESSAGES)
-        g_ptr_array_add(live->messages, g_strdup(json->str));
 }
 
 /* ---- painting ------------------------------------------------------------------------------- */
@@ -117,45 +130,69 @@ static void paint_anew(Live *live, bool anew)
         live->drop ? fl_live_drop_inputs(live->drop) : live->args->render.inputs;
     g_ptr_array_set_size(live->messages, 0);
     live->generation++;
-    fl_live_film_set(live->film, live->generation, inputs, anew, config_path(live),
+    fl_live_film_set(live->film, live->generation, inputs, anew, fl_live_config_path(live->config),
                      fl_live_config_text(live->config));
-    say_state(live);
-    fl_live_clients_begin(live->clients, live->generation);
+    g_autofree char *state = state_of(live);
+    say_to_all(state, live);
 }
 
-/* A choice whose first draft fails is taken back. */
+/* Frees files that were dropped, unless they are the others. */
+static void free_drop(FlLiveDrop *drop, const FlLiveDrop *others)
+{
+    if (drop != others)
+        fl_live_drop_free(drop);
+}
+
+/* Takes back all that was chosen or dropped since the last draft. */
+static bool take_back(Live *live)
+{
+    const bool dropped = live->last != live->drop, chosen = fl_live_config_revert(live->config);
+    free_drop(live->drop, live->last);
+    live->drop = live->last;
+    if (dropped || chosen)
+        paint_anew(live, dropped);
+    return dropped || chosen;
+}
+
+/* A sample that fails is one that its page no longer waits for. */
+static void on_failed(Live *live, const FlLiveJob *job)
+{
+    g_autofree char *reverted = object_of("reverted", job->error->message);
+    if (job->work == FL_LIVE_SAMPLE)
+        answer_page(job->asker, "lost", "a sample");
+    else if (job->work == FL_LIVE_DRAFT && take_back(live))
+        say_to_all(reverted, live);
+    else
+        tell(live, "error", job->error->message);
+}
+
 static void on_done(FlLiveJob *job, void *data)
 {
     Live *live = data;
     const bool current = job->generation == live->generation;
-    const bool failed = current && job->error && job->work != FL_LIVE_SAMPLE &&
-                        !g_error_matches(job->error, FL_ERROR, FL_ERROR_INTERRUPTED);
-    g_autofree char *words = failed ? g_strdup(job->error->message) : NULL;
-    const bool first = job->work == FL_LIVE_DRAFT;
-    if (current && !failed && first)
+    g_autoptr(SoupWebsocketConnection) page = job->asker;
+    if (job->facts) {
+        g_free(live->facts);
+        live->facts = g_strdup_printf("{\"film\":%s}", job->facts);
+        say_to_all(live->facts, live);
+    }
+    for (guint k = 0; current && k < job->pictures->len; k++)
+        if (soup_websocket_connection_get_state(page) == SOUP_WEBSOCKET_STATE_OPEN)
+            soup_websocket_connection_send_message(page, SOUP_WEBSOCKET_DATA_BINARY,
+                                                   job->pictures->pdata[k]);
+    if (current && job->error && !g_error_matches(job->error, FL_ERROR, FL_ERROR_INTERRUPTED))
+        on_failed(live, job);
+    else if (current && job->work == FL_LIVE_DRAFT) {
+        free_drop(live->last, live->drop);
+        live->last = live->drop;
         fl_live_config_keep(live->config);
-    fl_live_clients_take(live->clients, job);
-    if (failed && first && fl_live_config_revert(live->config)) {
-        paint_anew(live, false);
-        say(live, "refused", words, false);
-    } else if (failed)
-        say(live, "error", words, true);
-}
-
-static void on_progress(const char *stage, int done, int total, void *data)
-{
-    Live *live = data;
-    g_autoptr(GString) json = g_string_new("{\"progress\":{");
-    fl_json_text(json, "stage", stage);
-    fl_json_number(json, "done", done, true);
-    fl_json_number(json, "total", total, true);
-    g_string_append(json, "}}");
-    fl_live_clients_say(live->clients, json->str);
+    }
+    fl_live_job_free(job);
 }
 
 static void on_warning(const char *message, void *data)
 {
-    say(data, "warning", message, true);
+    tell(data, "warning", message);
 }
 
 static void watch_input(const char *path, void *data)
@@ -185,157 +222,114 @@ static gboolean on_tick(void *data)
     const bool read = fl_live_config_reload(live->config, &error);
     paint_anew(live, true);
     if (!read)
-        say(live, "error", error->message, true);
+        tell(live, "error", error->message);
     return G_SOURCE_CONTINUE;
 }
 
-/* ---- answers -------------------------------------------------------------------------------- */
+/* ---- messages of pages ---------------------------------------------------------------------- */
 
-static void answer(SoupServerMessage *message, const char *type, const char *text, gsize bytes)
+/* paint, GENERATION of the settings, WORK, FRAME, STYLE, REGION: a job. */
+static void take_paint(Live *live, SoupWebsocketConnection *page, char **part)
 {
-    soup_server_message_set_status(message, SOUP_STATUS_OK, NULL);
-    soup_server_message_set_response(message, type, SOUP_MEMORY_COPY, text, bytes);
+    FlLiveJob *job = g_new(FlLiveJob, 1);
+    *job = (FlLiveJob){.work = CLAMP(atoi(part[2]), FL_LIVE_DRAFT, FL_LIVE_DRAWING),
+                       .generation = MAX(atoi(part[1]), 0),
+                       .frame = atoi(part[3]),
+                       .style = atoi(part[4]),
+                       .region = *part[5] ? g_strdup(part[5]) : NULL,
+                       .asker = g_object_ref(page)};
+    fl_live_film_ask(live->film, job);
 }
 
-static void refuse(SoupServerMessage *message, guint status, const char *reason)
-{
-    g_autofree char *line = g_strdup_printf("%s\n", reason);
-    soup_server_message_set_status(message, status, NULL);
-    soup_server_message_set_response(message, "text/plain", SOUP_MEMORY_COPY, line, strlen(line));
-}
-
-static void attach(SoupServerMessage *message, const char *name)
-{
-    g_autoptr(GHashTable) params = g_hash_table_new(g_str_hash, g_str_equal);
-    g_hash_table_insert(params, (gpointer) "filename", (gpointer)name);
-    soup_message_headers_set_content_disposition(soup_server_message_get_response_headers(message),
-                                                 "attachment", params);
-}
-
-static void get_page(Live *live, SoupServerMessage *message, GHashTable *query)
-{
-    g_autoptr(GBytes) page = fl_live_page();
-    gsize bytes = 0;
-    const char *text = g_bytes_get_data(page, &bytes);
-    answer(message, "text/html; charset=utf-8", text, bytes);
-}
-
-static void get_options(Live *live, SoupServerMessage *message, GHashTable *query)
-{
-    g_autofree char *json = fl_live_config_options();
-    answer(message, "application/json", json, strlen(json));
-}
-
-static void get_config(Live *live, SoupServerMessage *message, GHashTable *query)
-{
-    const char *text = fl_live_config_text(live->config);
-    g_autofree char *name = config_name(live);
-    answer(message, "text/plain; charset=utf-8", text, strlen(text));
-    attach(message, name);
-}
-
-static GHashTable *form_of(SoupServerMessage *message)
-{
-    SoupMessageBody *body = soup_server_message_get_request_body(message);
-    g_autofree char *text = g_strndup(body->data ? body->data : "", (gsize)body->length);
-    return soup_form_decode(text);
-}
-
-/* A choice has section, key and value. The answer is the generation of the new settings. */
-static void post_choice(Live *live, SoupServerMessage *message, GHashTable *query)
-{
-    g_autoptr(GHashTable) form = form_of(message);
-    g_autoptr(GError) error = NULL;
-    const char *section = g_hash_table_lookup(form, "section");
-    const char *key = g_hash_table_lookup(form, "key");
-    const char *value = g_hash_table_lookup(form, "value");
-    if (!section || !key || !value) {
-        refuse(message, SOUP_STATUS_BAD_REQUEST, "expected section, key and value");
-        return;
-    }
-    if (!fl_live_config_choose(live->config, section, key, value, &error)) {
-        refuse(message, SOUP_STATUS_BAD_REQUEST, error->message);
-        return;
-    }
-    paint_anew(live, false);
-    g_autofree char *generation = g_strdup_printf("%d\n", live->generation);
-    answer(message, "text/plain", generation, strlen(generation));
-}
-
-/* replace=1: a file that is there already as well. */
-static void post_save(Live *live, SoupServerMessage *message, GHashTable *query)
-{
-    g_autoptr(GHashTable) form = form_of(message);
-    g_autoptr(GError) error = NULL;
-    const bool replace = g_strcmp0(g_hash_table_lookup(form, "replace"), "1") == 0;
-    if (live->drop) {
-        refuse(message, SOUP_STATUS_BAD_REQUEST,
-               "the drawing was dropped here, so its folder is not known: download the config");
-        return;
-    }
-    g_autofree char *path = fl_live_config_save(live->config, replace, &error);
-    if (!path) {
-        const bool exists = g_error_matches(error, FL_ERROR, FL_ERROR_EXISTS);
-        refuse(message, exists ? SOUP_STATUS_CONFLICT : SOUP_STATUS_BAD_REQUEST, error->message);
-        return;
-    }
-    watch_anew(live); // so the saved file does not count as changed
-    answer(message, "text/plain; charset=utf-8", path, strlen(path));
-}
-
-typedef struct Dropped {
-    Live *live;
-    SoupServerMessage *message;
-} Dropped;
-
-static void on_dropped(const GError *error, void *data)
-{
-    g_autofree Dropped *dropped = data;
-    Live *live = dropped->live;
-    if (error)
-        refuse(dropped->message, SOUP_STATUS_BAD_REQUEST, error->message);
-    else {
-        fl_live_drop_free(live->drop);
-        live->drop = g_steal_pointer(&live->dropping);
-        paint_anew(live, true);
-        answer(dropped->message, "text/plain", "dropped\n", strlen("dropped\n"));
-    }
-    soup_server_message_unpause(dropped->message);
-    g_object_unref(dropped->message);
-}
-
-/* ?name=NAME&first=1&last=1: one of several files, which are the drawing from the last one on. */
-static void post_drop(Live *live, SoupServerMessage *message, GHashTable *query)
+/* choose, SECTION, KEY, VALUE. */
+static void take_choice(Live *live, SoupWebsocketConnection *page, char **part)
 {
     g_autoptr(GError) error = NULL;
-    SoupMessageBody *body = soup_server_message_get_request_body(message);
-    const char *name = query ? g_hash_table_lookup(query, "name") : NULL;
-    const bool first = query && g_hash_table_contains(query, "first");
-    if (first)
-        fl_live_drop_begin(&live->dropping);
-    if (!name || !fl_live_drop_add(live->dropping, name, body->data, (gsize)body->length, &error)) {
-        refuse(message, SOUP_STATUS_BAD_REQUEST, error ? error->message : "expected a name");
-        return;
-    }
-    if (!g_hash_table_contains(query, "last")) {
-        answer(message, "text/plain", "dropped\n", strlen("dropped\n"));
-        return;
-    }
-    Dropped *dropped = g_new(Dropped, 1);
-    *dropped = (Dropped){live, g_object_ref(message)};
-    soup_server_message_pause(message);
-    fl_live_drop_end(live->dropping, on_dropped, dropped);
+    const bool chosen = fl_live_config_choose(live->config, part[1], part[2], part[3], &error);
+    if (chosen)
+        paint_anew(live, false);
+    answer_page(page, chosen ? "chosen" : "refused", chosen ? part[2] : error->message);
+}
+
+/* save, REPLACE: "1": a file that is there already as well. */
+static void take_save(Live *live, SoupWebsocketConnection *page, char **part)
+{
+    g_autoptr(GError) error = NULL;
+    const char *path = fl_live_config_path(live->config);
+    const bool saved = !live->drop && fl_live_config_save(live->config, *part[1] == '1', &error);
+    if (saved)
+        watch_anew(live); // so the saved file does not count as changed
+    answer_page(page,
+                saved                                               ? "saved"
+                : g_error_matches(error, FL_ERROR, FL_ERROR_EXISTS) ? "exists"
+                                                                    : "unsaved",
+                saved        ? path
+                : live->drop ? "the drawing was dropped here, so its folder is not known: download "
+                               "the config"
+                             : error->message);
+}
+
+/* Each part of a message is a line. */
+static void on_text(SoupWebsocketConnection *page, int type, GBytes *message, void *data)
+{
+    static const struct {
+        const char *name;
+        guint parts;
+        void (*take)(Live *live, SoupWebsocketConnection *page, char **part);
+    } known[] = {{"paint", 6, take_paint}, {"choose", 4, take_choice}, {"save", 2, take_save}};
+    gsize bytes;
+    const char *letters = g_bytes_get_data(message, &bytes);
+    g_autofree char *text = g_strndup(letters ? letters : "", bytes);
+    g_auto(GStrv) part = g_strsplit(text, "\n", -1);
+    for (size_t k = 0; k < G_N_ELEMENTS(known); k++)
+        if (g_strv_length(part) == known[k].parts && strcmp(part[0], known[k].name) == 0) {
+            known[k].take(data, page, part);
+            return;
+        }
+    answer_page(page, "refused", "expected paint, choose or save, and a line for each value");
+}
+
+static void on_closed(SoupWebsocketConnection *page, void *data)
+{
+    const Live *live = data;
+    g_ptr_array_remove_fast(live->pages, page);
+}
+
+static void leave(void *page)
+{
+    g_signal_handlers_disconnect_matched(page, G_SIGNAL_MATCH_FUNC, 0, 0, NULL, on_text, NULL);
+    g_signal_handlers_disconnect_matched(page, G_SIGNAL_MATCH_FUNC, 0, 0, NULL, on_closed, NULL);
+    g_object_unref(page);
 }
 
 /* ---- requests ------------------------------------------------------------------------------- */
 
-static const struct Resource {
-    const char *method, *name;
-    void (*answer)(Live *live, SoupServerMessage *message, GHashTable *query);
-} resources[] = {
-    {"GET", "", get_page},           {"GET", "options", get_options}, {"GET", "config", get_config},
-    {"POST", "choice", post_choice}, {"POST", "save", post_save},     {"POST", "drop", post_drop},
-};
+static void answer(SoupServerMessage *message, guint status, const char *type, const char *text,
+                   gsize bytes)
+{
+    soup_server_message_set_status(message, status, NULL);
+    soup_server_message_set_response(message, type, SOUP_MEMORY_COPY, text, bytes);
+}
+
+static void answer_line(SoupServerMessage *message, guint status, const char *words)
+{
+    g_autofree char *line = g_strdup_printf("%s\n", words);
+    answer(message, status, "text/plain; charset=utf-8", line, strlen(line));
+}
+
+/* They are painted in place of the others; see take_back(). */
+static void take_drop(Live *live, SoupServerMessage *message)
+{
+    g_autoptr(GError) error = NULL;
+    FlLiveDrop *drop = fl_live_drop_new(message, &error);
+    if (drop) {
+        free_drop(live->drop, live->last);
+        live->drop = drop;
+        paint_anew(live, true);
+    }
+    answer_line(message, drop ? SOUP_STATUS_OK : SOUP_STATUS_BAD_REQUEST,
+                drop ? "dropped" : error->message);
+}
 
 static bool is_own_host(const Live *live, const char *host)
 {
@@ -375,19 +369,17 @@ static void on_headers(SoupServer *server, SoupServerMessage *message, const cha
 {
     const Live *live = data;
     SoupMessageHeaders *headers = soup_server_message_get_request_headers(message);
-    const SoupEncoding encoding = soup_message_headers_get_encoding(headers);
     const bool drops = g_str_has_suffix(path, "/drop");
     protect(message);
     if (!is_own_page(live, message))
-        refuse(message, SOUP_STATUS_FORBIDDEN, "this page is for a browser on this machine");
+        answer_line(message, SOUP_STATUS_FORBIDDEN, "this page is for a browser on this machine");
     else if (!g_str_has_prefix(path, live->root))
-        refuse(message, SOUP_STATUS_NOT_FOUND,
-               "not found; open the full address that fluidy-svg printed");
-    else if ((encoding != SOUP_ENCODING_NONE && encoding != SOUP_ENCODING_CONTENT_LENGTH) ||
-             soup_message_headers_get_content_length(headers) >
-                 (drops ? LONGEST_DROP : LONGEST_BODY))
-        refuse(message, SOUP_STATUS_REQUEST_ENTITY_TOO_LARGE,
-               drops ? "the file is larger than 64 MiB" : "the request is larger than 64 KiB");
+        answer_line(message, SOUP_STATUS_NOT_FOUND,
+                    "not found; open the full address that fluidy-svg printed");
+    else if (soup_message_headers_get_encoding(headers) == SOUP_ENCODING_CHUNKED ||
+             soup_message_headers_get_content_length(headers) > (drops ? LONGEST_DROP : 0))
+        answer_line(message, SOUP_STATUS_REQUEST_ENTITY_TOO_LARGE,
+                    "the files are larger than 256 MiB; give the program their folder");
 }
 
 static void on_request(SoupServer *server, SoupServerMessage *message, const char *path,
@@ -395,28 +387,35 @@ static void on_request(SoupServer *server, SoupServerMessage *message, const cha
 {
     Live *live = data;
     const char *method = soup_server_message_get_method(message);
-    for (size_t k = 0; k < G_N_ELEMENTS(resources); k++)
-        if (strcmp(resources[k].method, method) == 0 &&
-            strcmp(resources[k].name, path + strlen(live->root)) == 0) {
-            resources[k].answer(live, message, query);
-            return;
-        }
-    refuse(message, SOUP_STATUS_NOT_FOUND, "not found");
+    const char *name = path + strlen(live->root);
+    g_autoptr(GBytes) page = fl_live_page();
+    if (strcmp(method, "GET") == 0 && !*name)
+        answer(message, SOUP_STATUS_OK, "text/html; charset=utf-8", g_bytes_get_data(page, NULL),
+               g_bytes_get_size(page));
+    else if (strcmp(method, "POST") == 0 && strcmp(name, "drop") == 0)
+        take_drop(live, message);
+    else
+        answer_line(message, SOUP_STATUS_NOT_FOUND, "not found");
 }
 
-/* A page that looks: its first message is the state. */
+/* A page that looks: it gets its controls, the state and the facts of the film. */
 static void on_page(SoupServer *server, SoupServerMessage *message, const char *path,
-                    SoupWebsocketConnection *socket, void *data)
+                    SoupWebsocketConnection *page, void *data)
 {
     Live *live = data;
     if (!is_own_page(live, message)) { // this connection needs no answer of on_headers()
-        soup_websocket_connection_close(socket, SOUP_WEBSOCKET_CLOSE_POLICY_VIOLATION, NULL);
+        soup_websocket_connection_close(page, SOUP_WEBSOCKET_CLOSE_POLICY_VIOLATION, NULL);
         return;
     }
-    if (fl_live_clients_stuck(live->clients)) // the cause may be mended
-        paint_anew(live, false);
-    g_autofree char *state = state_of(live);
-    fl_live_clients_add(live->clients, socket, state);
+    g_autofree char *state = state_of(live), *controls = fl_live_config_options();
+    soup_websocket_connection_set_keepalive_interval(page, PING_S);
+    g_ptr_array_add(live->pages, g_object_ref(page));
+    g_signal_connect(page, "message", G_CALLBACK(on_text), live);
+    g_signal_connect(page, "closed", G_CALLBACK(on_closed), live);
+    say_to(page, controls);
+    say_to(page, state);
+    if (live->facts)
+        say_to(page, live->facts);
 }
 
 /* ---- the whole ------------------------------------------------------------------------------ */
@@ -457,6 +456,48 @@ static char *new_secret(GError **error)
     return g_string_free(text, FALSE);
 }
 
+static void on_end(void *data, GObject *connection)
+{
+    Live *live = data;
+    live->n_connections--;
+}
+
+/* Connections beyond the most are closed at once, so that files can still be opened. */
+static gboolean on_connection(GSocketService *service, GSocketConnection *connection,
+                              GObject *source, void *data)
+{
+    Live *live = data;
+    g_autoptr(GSocketAddress) here = g_socket_connection_get_local_address(connection, NULL);
+    g_autoptr(GSocketAddress) there = g_socket_connection_get_remote_address(connection, NULL);
+    if (live->n_connections >= MOST_CONNECTIONS)
+        return TRUE;
+    live->n_connections++;
+    g_object_weak_ref(G_OBJECT(connection), on_end, live);
+    g_socket_set_timeout(g_socket_connection_get_socket(connection), SILENT_S);
+    soup_server_accept_iostream(live->server, G_IO_STREAM(connection), here, there, NULL);
+    return TRUE;
+}
+
+/* Returns: the port of 127.0.0.1; 0: an error. */
+static int listen_here(Live *live, GError **error)
+{
+    g_autoptr(GInetAddress) loopback = g_inet_address_new_loopback(G_SOCKET_FAMILY_IPV4);
+    g_autoptr(GSocketAddress) bound = NULL;
+    g_autoptr(GSocketAddress) address =
+        g_inet_socket_address_new(loopback, (guint16)live->args->port);
+    g_autoptr(GError) problem = NULL;
+    live->service = g_socket_service_new();
+    g_signal_connect(live->service, "incoming", G_CALLBACK(on_connection), live);
+    if (g_socket_listener_add_address(G_SOCKET_LISTENER(live->service), address,
+                                      G_SOCKET_TYPE_STREAM, G_SOCKET_PROTOCOL_TCP, NULL, &bound,
+                                      &problem))
+        return g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(bound));
+    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT,
+                "--serve: port %d of 127.0.0.1: %s; choose another one, or none for any",
+                live->args->port, problem->message);
+    return 0;
+}
+
 static bool open_server(Live *live, GError **error)
 {
     live->root = new_secret(error);
@@ -467,13 +508,10 @@ static bool open_server(Live *live, GError **error)
     soup_server_add_early_handler(live->server, NULL, on_headers, live, NULL);
     soup_server_add_handler(live->server, NULL, on_request, live, NULL);
     soup_server_add_websocket_handler(live->server, pictures, NULL, NULL, on_page, live, NULL);
-    live->socket = fl_live_socket_new(live->server, live->args->port, error);
-    if (!live->socket)
-        return false;
-    const int bound = fl_live_socket_port(live->socket);
-    live->hosts[0] = g_strdup_printf("127.0.0.1:%d", bound);
-    live->hosts[1] = g_strdup_printf("localhost:%d", bound);
-    return true;
+    const int port = listen_here(live, error);
+    live->hosts[0] = g_strdup_printf("127.0.0.1:%d", port);
+    live->hosts[1] = g_strdup_printf("localhost:%d", port);
+    return port > 0;
 }
 
 static void on_window_closed(GObject *window, GAsyncResult *result, void *data)
@@ -515,10 +553,8 @@ static bool prepare(Live *live, GError **error)
 
 static void run(Live *live)
 {
-    const FlLiveCalls calls = {on_done, on_progress, on_warning, watch_input, live};
-    live->messages = g_ptr_array_new_with_free_func(g_free);
+    const FlLiveCalls calls = {on_done, say_to_all, on_warning, watch_input, live};
     live->film = fl_live_film_new(live->args, &calls);
-    live->clients = fl_live_clients_new(live->film);
     watch_anew(live);
     const guint tick = g_timeout_add(TICK_MS, on_tick, live);
     printf("http://%s%s\n", live->hosts[0], live->root);
@@ -532,19 +568,22 @@ static void clear(Live *live)
 {
     if (live->window)
         g_subprocess_force_exit(live->window);
+    if (live->service)
+        g_socket_service_stop(live->service);
     if (live->server)
         soup_server_disconnect(live->server);
     fl_live_film_free(live->film);
-    fl_live_clients_free(live->clients);
-    fl_live_socket_free(live->socket);
+    g_ptr_array_unref(live->pages);
     g_clear_object(&live->server);
+    g_clear_object(&live->service);
     g_clear_object(&live->window);
+    free_drop(live->last, live->drop);
+    fl_live_drop_free(live->drop);
     fl_live_config_free(live->config);
     fl_file_watch_free(live->files);
-    fl_live_drop_free(live->drop);
-    fl_live_drop_free(live->dropping);
-    g_clear_pointer(&live->messages, g_ptr_array_unref);
-    g_clear_pointer(&live->loop, g_main_loop_unref);
+    g_ptr_array_unref(live->messages);
+    g_main_loop_unref(live->loop);
+    g_free(live->facts);
     g_free(live->hosts[0]);
     g_free(live->hosts[1]);
     g_free(live->root);
@@ -552,7 +591,11 @@ static void clear(Live *live)
 
 bool fl_serve(const FlArgs *args, const volatile sig_atomic_t *stop, GError **error)
 {
-    Live live = {.args = args, .stop = stop, .loop = g_main_loop_new(NULL, FALSE)};
+    Live live = {.args = args,
+                 .stop = stop,
+                 .pages = g_ptr_array_new_with_free_func(leave),
+                 .messages = g_ptr_array_new_with_free_func(g_free),
+                 .loop = g_main_loop_new(NULL, FALSE)};
     const bool served = check_options(args, error) && prepare(&live, error);
     if (served)
         run(&live);

@@ -182,8 +182,8 @@ FL_API char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const cha
                           GError **error);
 
 /**
- * The page of a report that is live, HTML: a list of regions, controls, and the film. It asks
- * `state`, `options` and `choice` beside its own address; see inspect/live.html.
+ * The page of a report that is live, HTML: a list of regions, controls, and the film. It connects
+ * to `pictures` beside its own address, a WebSocket; see inspect/live.html.
  *
  * Returns: to be freed with g_bytes_unref().
  */
