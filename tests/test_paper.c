@@ -273,7 +273,7 @@ static double mean_granulated(const FlPaperSheet *sheet, float granulation, int 
     double sum = 0, squares = 0;
     for (int i = 0; i < SIDE * SIDE; i++)
         amounts[i] = (int16_t)(i % 9 == 0 ? -1 : amount);
-    fl_granulate(granulation, fl_paper_sheet_tooth(sheet, 0), &area, amounts);
+    fl_granulate(granulation, fl_paper_sheet_tooth(sheet, 0), &area, amounts, NULL);
     int n = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {
         g_assert_true(amounts[i] < FL_AMOUNTS && (amounts[i] == -1) == (i % 9 == 0));
@@ -307,13 +307,31 @@ static void wet_paint_settles_and_dry_paint_catches(void)
     const FlTooth tooth = {heights, 3};
     const FlArea area = {{0, 0, 3, 1}, NULL};
     int16_t wet[3] = {1024, 1024, 1024}, dry[3] = {300, 300, 300}, flat[3] = {1024, 5, -1};
-    fl_granulate(.14f, tooth, &area, wet);
+    fl_granulate(.14f, tooth, &area, wet, NULL);
     g_assert_true(wet[0] > 1200 && wet[1] == 1024 && wet[2] < 880);
-    fl_granulate(-.35f, tooth, &area, dry);
+    fl_granulate(-.35f, tooth, &area, dry, NULL);
     g_assert_true(dry[0] == 0 && dry[1] == 300 && dry[2] > 500);
-    fl_granulate(.14f, (FlTooth){0}, &area, flat);
-    fl_granulate(0, tooth, &area, flat);
+    fl_granulate(.14f, (FlTooth){0}, &area, flat, NULL);
+    fl_granulate(0, tooth, &area, flat, NULL);
     g_assert_true(flat[0] == 1024 && flat[1] == 5 && flat[2] == -1);
+}
+
+/* Of two pigments the heavy one granulates and parts from the other, and the one that stains does
+ * not. */
+static void heavy_pigments_settle(void)
+{
+    int8_t heights[4] = {-2 * FL_TOOTH_ONE, 2 * FL_TOOTH_ONE, -2 * FL_TOOTH_ONE, 2 * FL_TOOTH_ONE};
+    int8_t play[4] = {64, 64, -64, -64};
+    const FlTooth tooth = {heights, 4};
+    const FlArea area = {{0, 0, 4, 1}, NULL};
+    int16_t amounts[4] = {1024, 1024, 1024, 1024};
+    fl_granulate(.14f, tooth, &area, amounts, play);
+    g_assert_cmpint(amounts[0] - amounts[1], >, 4 * (amounts[2] - amounts[3]));
+    g_assert_true(play[0] > 70 && play[1] < 58);
+    g_assert_true(play[2] > -64 - 10 && play[2] < -64 + 10);
+    const int8_t before = play[0];
+    fl_granulate(-.14f, tooth, &area, amounts, play); // dry paint does not part
+    g_assert_cmpint(play[0], ==, before);
 }
 
 /** Cells that are remembered between calls, and points that are left out, change nothing. */
@@ -368,6 +386,7 @@ int main(int argc, char **argv)
     g_test_add_func("/paper/granulation-keeps-the-tone", granulation_keeps_the_tone);
     g_test_add_func("/paper/wet-paint-settles-and-dry-paint-catches",
                     wet_paint_settles_and_dry_paint_catches);
+    g_test_add_func("/paper/heavy-pigments-settle", heavy_pigments_settle);
     g_test_add_func("/paper/noise-of-a-row-is-that-of-its-places",
                     noise_of_a_row_is_that_of_its_places);
     g_test_add_func("/paper/noise-is-a-function-of-place-alone",

@@ -32,22 +32,37 @@ static int dry_amount(int amount, int32_t more)
     return (int)((amount * factor + 32768) >> 16);
 }
 
-void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t *amounts)
+#define HEAVY_ONE 64
+
+/* The share by which paint granulates, of HEAVY_ONE: of its two pigments the second one is heavy,
+ * and the first one stains. */
+static int heavy_at(const int8_t *play, int x)
+{
+    return play ? CLAMP(30 + play[x] * 5 / 8, 6, 72) : HEAVY_ONE;
+}
+
+void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t *amounts,
+                  int8_t *play)
 {
     int32_t strength[STEPS];
     const FlRect box = area->box;
     if (!tooth.height || granulation == 0)
         return;
     fill_strengths(granulation, strength);
+    const int32_t apart = (int32_t)lrintf(granulation * 5000); // of 65536: plays by height
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
         const int8_t *height = tooth.height + (size_t)(box.y + y) * tooth.stride + (size_t)box.x;
         int16_t *row = amounts + (size_t)y * (size_t)box.width;
+        int8_t *plays = play && granulation > 0 ? play + (size_t)y * (size_t)box.width : NULL;
         for (int x = span.first; x < span.last; x++) {
             if (row[x] <= 0)
                 continue;
-            const int32_t by = strength[row[x] / STEP] * height[x];
+            const int heavy = heavy_at(plays, x) * height[x];
+            const int32_t by = strength[row[x] / STEP] * heavy / HEAVY_ONE;
+            if (plays) // the heavy pigment leaves peaks for hollows
+                plays[x] = (int8_t)CLAMP(plays[x] - (heavy * apart >> 16), -125, 125);
             const int amount = granulation > 0 ? wet_amount(row[x], by) : dry_amount(row[x], by);
             row[x] = (int16_t)MIN(amount, FL_AMOUNTS - 1);
         }

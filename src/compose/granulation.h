@@ -11,7 +11,11 @@
  * granulation is -1..1. Above 0 paint is wet and settles in hollows, least where it is thick; below
  * 0 it is dry, catches on peaks and leaves hollows bare. 0 or a flat tooth: the amounts stay. The
  * mean amount stays to within 2 % up to .2.
+ *
+ * play, of the box as amounts are, is of fl_wash_lay(); NULL: paint of one pigment. Where the first
+ * pigment prevails wet paint hardly granulates; the second one goes from peaks into hollows.
  */
-void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t *amounts);
+void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t *amounts,
+                  int8_t *play);
 
 #endif

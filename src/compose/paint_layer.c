@@ -198,16 +198,19 @@ static bool colour_layer(FlLayer *layer, const FlLayerSources *sources, int r,
     const FlWash *wash = fl_wash_of_draw(sources->washes, r);
     g_autofree int8_t *play = NULL;
     g_autofree uint8_t *fills = NULL;
+    const float white = whiteness_of(colouring, wash);
     if (wash) {
         if (!(play = fl_alloc_unset(fl_rect_pixels(layer->area.box), 1, "a layer", error)))
             return false;
-        fl_wash_lay(wash, whiteness_of(colouring, wash), &layer->area, amounts, play);
+        fl_wash_lay(wash, white, &layer->area, amounts, play);
     }
     if (!run_together(layer, sources, r, colouring, amounts, &fills, error))
         return false;
+    const float granulation =
+        isnan(t->granulation) ? painted->style->granulation : (float)t->granulation;
     if (t->tint != FL_TINT_KEEP && marks_of(painted) <= FL_MARKS_OFF)
-        fl_granulate(isnan(t->granulation) ? painted->style->granulation : (float)t->granulation,
-                     sources->input->tooth, &layer->area, amounts);
+        fl_granulate(granulation * (1 - .8f * white), sources->input->tooth, &layer->area, amounts,
+                     play);
     FlColouring coloured = *colouring;
     coloured.play = play;
     coloured.picture = fills ? fills : colouring->picture;

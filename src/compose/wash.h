@@ -14,8 +14,10 @@ typedef enum FlWashPlane {
     FL_WASH_LINES,  // strength of passes, 0..1
     FL_WASH_FRONT,  // distance from where water stopped, px of the page; below 0 it was flooded
     FL_WASH_FRONTS, // strength of fronts, 0..2
-    FL_WASH_ALONG,  // place along the nearest front, px of the page
-    FL_WASH_CALM,   // share of the recording's unevenness that is lost, 0..1
+    FL_WASH_X,      // place in the shape, px of the page, drawn out across fronts
+    FL_WASH_Y,
+    FL_WASH_ROUGH, // strength of ragged ends, ln of the amount
+    FL_WASH_CALM,  // share of the recording's unevenness that is lost, 0..1
     FL_WASH_PLANES,
 } FlWashPlane;
 
@@ -26,6 +28,7 @@ typedef struct FlWash {
     FlWashStyle style;              // its strengths
     uint64_t key;                   // of the film's seed and the fill
     float brush_px;                 // width of a pass, px of the page
+    float along[2];                 // vector along the passes
     FlRect box;                     // px of the frame
     int step;                       // px of the frame from point to point
     int width, height;              // points; the first is at the corner of the box

@@ -9,7 +9,8 @@
 #include <math.h>
 
 #define LOADS 256     // of the brush, that repeat
-#define HAIRS 1024    // in a line, half a px each, that repeats
+#define RAGGED 256    // px of a square of ragged noise, that repeats
+#define RAGGED_ONE 80 // steps of it
 #define TONE_ONE 256  // steps of ln of a factor
 #define TONE_LEAST -2 // at 64 * 255 a factor is one, and 4 is the most
 #define TONES (TONE_ONE * 27 / 8)
@@ -19,20 +20,43 @@ typedef struct Brush {
     const FlWash *wash;
     float white;
     float load[LOADS + 1]; // of each pass, -1..1
-    float hair[HAIRS];     // along a front, 0..1
+    const int8_t *ragged;  // RAGGED * RAGGED
     uint16_t factor[TONES];
 } Brush;
 
-static void fill_hairs(const FlWash *wash, float hair[HAIRS])
+/* A row of noise that repeats: of copies a square apart, mixed so that its deviation stays. */
+static void fill_ragged_row(int y, int8_t row[RAGGED])
 {
-    float x[FL_NOISE_ROW], y[FL_NOISE_ROW] = {0};
-    for (int k = 0; k < HAIRS; k += FL_NOISE_ROW) {
-        for (int i = 0; i < FL_NOISE_ROW; i++)
-            x[i] = (float)(k + i) * .125f, y[i] = .5f;
-        fl_noise_octaves_row(wash->key, x, y, FL_NOISE_ROW, 2, .8f, hair + k);
+    static const float cell = 20;
+    float px[FL_NOISE_ROW], py[FL_NOISE_ROW], noise[4][FL_NOISE_ROW];
+    const float down = (float)y / RAGGED;
+    for (int copy = 0; copy < 4; copy++) {
+        for (int x = 0; x < RAGGED; x++) {
+            px[x] = (float)(x - copy % 2 * RAGGED) / cell;
+            py[x] = (float)(y - copy / 2 * RAGGED) / cell;
+        }
+        fl_noise_octaves_row(1, px, py, RAGGED, 4, .7f, noise[copy]);
     }
-    for (int k = 0; k < HAIRS; k++)
-        hair[k] = fl_clamp(.5f + .8f * hair[k], 0, 1);
+    for (int x = 0; x < RAGGED; x++) {
+        const float right = (float)x / RAGGED;
+        const float upper = noise[0][x] + (noise[1][x] - noise[0][x]) * right;
+        const float lower = noise[2][x] + (noise[3][x] - noise[2][x]) * right;
+        const float power = (1 - 2 * right * (1 - right)) * (1 - 2 * down * (1 - down));
+        const float mean = (upper + (lower - upper) * down) / sqrtf(power);
+        row[x] = (int8_t)fl_clamp(RAGGED_ONE * mean, -127, 127);
+    }
+}
+
+static const int8_t *ragged_noise(void)
+{
+    static int8_t ragged[RAGGED * RAGGED];
+    static gsize made;
+    if (g_once_init_enter(&made)) {
+        for (int y = 0; y < RAGGED; y++)
+            fill_ragged_row(y, ragged + (size_t)y * RAGGED);
+        g_once_init_leave(&made, 1);
+    }
+    return ragged;
 }
 
 static void brush_init(Brush *brush, const FlWash *wash, float white)
@@ -42,7 +66,7 @@ static void brush_init(Brush *brush, const FlWash *wash, float white)
     for (int k = 0; k < LOADS; k++)
         brush->load[k] = 2 * fl_rng_float(&rng) - 1;
     brush->load[LOADS] = brush->load[0];
-    fill_hairs(wash, brush->hair);
+    brush->ragged = ragged_noise();
     for (int i = 0; i < TONES; i++) {
         const float more = 1.442695f * ((float)i / TONE_ONE + TONE_LEAST);
         brush->factor[i] = fl_density_level((int32_t)lrintf((2 - more) * FL_DENSITY_ONE));
@@ -52,52 +76,72 @@ static void brush_init(Brush *brush, const FlWash *wash, float white)
 /* The values of the slow fields at a pixel. */
 typedef float Slow[FL_WASH_PLANES];
 
-/* The hair at a place, px of the page. */
-static inline float hair_at(const Brush *brush, float px)
+/* Ragged noise at a place, px of the page: mostly within -1..1. */
+static inline float ragged_at(const Brush *brush, float px, float py)
 {
-    return brush->hair[(int)floorf(2 * px) & (HAIRS - 1)];
+    px += 64 * RAGGED, py += 64 * RAGGED;
+    const int x = (int)px, y = (int)py;
+    const float right = px - (float)x, down = py - (float)y;
+    const int x0 = x & (RAGGED - 1), x1 = (x + 1) & (RAGGED - 1);
+    const int8_t *upper = brush->ragged + (y & (RAGGED - 1)) * RAGGED;
+    const int8_t *lower = brush->ragged + ((y + 1) & (RAGGED - 1)) * RAGGED;
+    const float a = (float)upper[x0] + (float)(upper[x1] - upper[x0]) * right;
+    const float b = (float)lower[x0] + (float)(lower[x1] - lower[x0]) * right;
+    return (a + (b - a) * down) / RAGGED_ONE;
 }
 
-/* Water carries paint to where it stops: a line, sharp towards what it flooded. Where it is strong,
- * teeth of uneven length run from it on the way that the water went. */
-static inline float front_at(const Brush *brush, const Slow slow)
+/* Water carries paint to where it stops: a line, sharp towards what it flooded, from which ragged
+ * tongues run on the way that the water went. */
+static inline float front_at(float away, float strength, float ragged)
 {
-    const float away = slow[FL_WASH_FRONT], strength = slow[FL_WASH_FRONTS];
     if (strength <= 0 || away < -12 || away > 60)
         return 0;
-    const float hair = hair_at(brush, slow[FL_WASH_ALONG]);
-    const float past = away + 2.5f * hair - 1;
+    const float past = away + 3 * ragged;
     if (past < 0)
         return strength * fl_decay(-past * .7f);
-    const float tooth = 3 + 26 * hair * hair * fl_smooth(3 * strength - 2);
-    return strength * (.5f * fl_smooth(1 - past / tooth) + .5f * fl_decay(past * .08f));
+    const float tongue = 4 + 30 * MAX(ragged + .1f, 0);
+    return strength * (.5f * fl_smooth(1 - past / tongue) + .5f * fl_decay(past * .08f));
 }
 
 /* From -.5 on the side that water flooded to .5 beyond its front. */
-static inline float side_at(const Slow slow)
+static inline float side_at(float away, float strength, float ragged)
 {
-    const float away = slow[FL_WASH_FRONT];
-    if (fabsf(away) > 40)
-        return away > 0 ? .5f : -.5f;
-    const float lost_px = 2 + 78 * fl_clamp(1 - slow[FL_WASH_FRONTS], 0, 1);
-    return fl_smooth(.5f + away / lost_px) - .5f;
+    const float lost = fl_clamp(1 - strength, 0, 1);
+    const float lost_px = 2 + 78 * lost, past = away + (3 + 17 * lost) * ragged;
+    return fl_smooth(.5f + past / lost_px) - .5f;
+}
+
+/* The load of the brush, mostly within -1..1, with streaks of its hairs where it is dry. */
+static inline float load_at(const Brush *brush, const Slow slow, float ragged)
+{
+    const FlWash *wash = brush->wash;
+    const float dry = fl_smooth(3 * slow[FL_WASH_DRY]);
+    const float pass = slow[FL_WASH_PASS] + .08f * ragged, whole = floorf(pass);
+    const float width = .5f - .47f * dry, part = pass - whole;
+    const float next = part > 1 - width ? fl_smooth((part - 1 + width) / width) : 0;
+    const float *load = brush->load + ((int)whole & (LOADS - 1));
+    const float along = wash->along[0] * slow[FL_WASH_X] + wash->along[1] * slow[FL_WASH_Y];
+    const float hairs = ragged_at(brush, slow[FL_WASH_PASS] * wash->brush_px, .08f * along);
+    return load[0] + (load[1] - load[0]) * next + .6f * dry * hairs;
 }
 
 /* The ln of the factor on the amount by a wash of strength 1, and the balance of the pigments, at a
  * pixel. Every edge parts two tones, passes as well as what dried first from what dried last; it is
- * crisp where it is found and wide where it is lost, and never ends amid one tone. */
+ * crisp where it is found and wide where it is lost, and never ends amid one tone. Slopes are
+ * ragged, and so is the heavy one of the pigments. */
 static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
 {
     const FlWashStyle *style = &brush->wash->style;
-    const float pass = floorf(slow[FL_WASH_PASS]), part = slow[FL_WASH_PASS] - pass;
-    const int k = (int)pass & (LOADS - 1);
-    const float width = .5f - .47f * fl_smooth((slow[FL_WASH_DRY] + .15f) / .3f);
-    const float next = part > 1 - width ? fl_smooth((part - 1 + width) / width) : 0;
-    const float load = brush->load[k] + (brush->load[k + 1] - brush->load[k]) * next;
-    const float lines = slow[FL_WASH_LINES], front = front_at(brush, slow);
-    *hue = slow[FL_WASH_HUE] + .4f * lines * load + .3f * front;
-    return slow[FL_WASH_TONE] + .27f * style->passes * lines * load + .36f * front +
-           .3f * MAX(style->tide, style->blooms) * lines * side_at(slow);
+    const float lines = slow[FL_WASH_LINES], strength = slow[FL_WASH_FRONTS];
+    const float ragged = ragged_at(brush, slow[FL_WASH_X], slow[FL_WASH_Y]);
+    const float load = style->passes * lines * load_at(brush, slow, ragged);
+    const float front = front_at(slow[FL_WASH_FRONT], strength, ragged);
+    const float side = side_at(slow[FL_WASH_FRONT], strength, ragged);
+    const float heavy = .05f * MAX(slow[FL_WASH_HUE], 0);
+    const float rough = lines * (slow[FL_WASH_ROUGH] + heavy) * ragged;
+    *hue = slow[FL_WASH_HUE] + .4f * load + .3f * front + 3 * rough;
+    return slow[FL_WASH_TONE] + .27f * load + .36f * front + rough +
+           .3f * MAX(style->tide, style->blooms) * lines * side;
 }
 
 void fl_wash_find_tones(const FlWash *wash, float *tones, float *hues)

@@ -60,17 +60,15 @@ typedef float Values[FL_WASH_PLANES][FL_NOISE_ROW];
 /* Passes of the brush lie across the light's slope, each with a wavering edge. */
 static void find_passes(const FlWashField *field, const Places *at, Values values)
 {
-    static const float wide[2] = {170, 170}, middle[2] = {42, 42};
+    static const float wide[2] = {170, 170};
     static const float cell[2] = {90, 60};
     const FlWash *wash = field->wash;
-    const uint64_t key = fl_key(wash->key, KEY_PASS);
-    float waver[2][FL_NOISE_ROW];
-    noise_at(fl_key(key, 1), at, wide, 0, 1, 1, waver[0]);
-    noise_at(fl_key(key, 2), at, middle, 0, 1, 1, waver[1]);
+    float waver[FL_NOISE_ROW];
+    noise_at(fl_key(wash->key, KEY_PASS), at, wide, 0, 1, 1, waver);
     noise_at(fl_key(wash->key, KEY_DRY), at, cell, 0, 1, 1, values[FL_WASH_DRY]);
     for (int i = 0; i < at->n; i++) {
         const float across = field->across[1] * at->y[i] + field->across[0] * at->x[i];
-        values[FL_WASH_PASS][i] = across / wash->brush_px + .3f * waver[0][i] + .05f * waver[1][i];
+        values[FL_WASH_PASS][i] = across / wash->brush_px + .3f * waver[i];
     }
 }
 
@@ -80,9 +78,9 @@ static void find_tide(const FlWash *wash, const Places *at, float *away)
     static const float wide[2] = {210, 190}, lobes[2] = {60, 60};
     float lobe[FL_NOISE_ROW];
     noise_at(fl_key(wash->key, KEY_TIDE), at, wide, .25f, 1, 1, away);
-    noise_at(fl_key(wash->key, KEY_TIDE + 100), at, lobes, .2f, 1, 1, lobe);
+    noise_at(fl_key(wash->key, KEY_TIDE + 100), at, lobes, .2f, 2, .5f, lobe);
     for (int i = 0; i < at->n; i++)
-        away[i] = wash->style.tide > 0 ? (away[i] + .08f * lobe[i]) / .011f : 1000;
+        away[i] = wash->style.tide > 0 ? (away[i] + .13f * lobe[i]) / .011f : 1000;
 }
 
 #define BLOOM_CELL 260 // one in this square at most
@@ -171,31 +169,33 @@ static void find_near(const Places *at, const float *away, Places *near, int *wh
 /* Fronts at which water stopped: drying lines and rims of blooms, as lobes between cusps. */
 static void find_fronts(const FlWash *wash, const Places *at, Values values)
 {
-    static const float place[2] = {170, 170}, wide[2] = {34, 34}, fine[2] = {12, 12};
-    const uint64_t key = fl_key(wash->key, KEY_LOBES);
+    static const float place[2] = {170, 170}, wide[2] = {34, 34};
     float *all = values[FL_WASH_FRONT], *fronts = values[FL_WASH_FRONTS];
-    float away[FL_NOISE_ROW], bloom[FL_NOISE_ROW], lobe[FL_NOISE_ROW], small[FL_NOISE_ROW];
+    float away[FL_NOISE_ROW], bloom[FL_NOISE_ROW], lobe[FL_NOISE_ROW];
     float place_of[FL_NOISE_ROW];
     int which[FL_NOISE_ROW];
     Places near, front;
     find_front(wash, at, all, bloom);
     find_near(at, all, &near, which);
     for (int i = 0; i < at->n; i++)
-        fronts[i] = values[FL_WASH_ALONG][i] = 0;
+        fronts[i] = 0;
+    memcpy(values[FL_WASH_X], at->x, sizeof at->x);
+    memcpy(values[FL_WASH_Y], at->y, sizeof at->y);
     for (int k = 0; k < near.n; k++)
         away[k] = all[which[k]];
     move_to_front(wash, &near, away, &front);
-    noise_at(fl_key(key, 1), &front, wide, 0, 1, 1, lobe);
-    noise_at(fl_key(key, 2), &front, fine, 0, 1, 1, small);
+    noise_at(fl_key(wash->key, KEY_LOBES), &front, wide, 0, 1, 1, lobe);
     noise_at(fl_key(wash->key, KEY_FRONTS), &near, place, 0, 1, 1, place_of);
     for (int k = 0; k < near.n; k++) {
         const int i = which[k];
         const float ends = fl_smooth(3 - 3 * fabsf(all[i]) / NEAR_PX);
-        all[i] = away[k] - 10 * (fabsf(lobe[k]) - .25f) - 4 * (fabsf(small[k]) - .25f);
-        fronts[i] = wash->style.tide * fl_smooth((place_of[k] + .15f) / .45f) * (1 - bloom[i]) +
+        all[i] = away[k] - 10 * (fabsf(lobe[k]) - .25f);
+        fronts[i] = wash->style.tide * fl_smooth((place_of[k] + .05f) / .45f) * (1 - bloom[i]) +
                     wash->style.blooms * fl_smooth(.2f + place_of[k]) * bloom[i];
-        fronts[i] *= ends;
-        values[FL_WASH_ALONG][i] = .8f * front.x[k] - .6f * front.y[k] + 14 * lobe[k];
+        fronts[i] *= ends * fl_smooth(.8f + 1.1f * lobe[k]); // found here and lost there
+        const float pull = .85f * fl_smooth(1.5f - fabsf(away[k]) / 24);
+        values[FL_WASH_X][i] += pull * (front.x[k] - near.x[k]);
+        values[FL_WASH_Y][i] += pull * (front.y[k] - near.y[k]);
     }
 }
 
@@ -230,7 +230,8 @@ static void find_values(const FlWashField *field, const Places *at, Values value
 
 static bool is_mixed(int plane)
 {
-    return plane != FL_WASH_PASS && plane != FL_WASH_FRONT && plane != FL_WASH_ALONG;
+    return plane != FL_WASH_PASS && plane != FL_WASH_FRONT && plane != FL_WASH_X &&
+           plane != FL_WASH_Y;
 }
 
 /* Adds the values of a part to those of the parts before it: slow ones are mixed by weight; lines

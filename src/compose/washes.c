@@ -39,6 +39,21 @@ static float light_of(const FlWashField *field)
     return 1 - (float)fl_light_share(fill, field->input->background->paper) / 32768;
 }
 
+/* Where the tone slopes wet paint ran, and left ragged ends. */
+static void find_rough(const FlWashField *field)
+{
+    const FlWash *wash = field->wash;
+    const float *tone = wash->plane[FL_WASH_TONE];
+    const float px = field->input->paper_px / (float)wash->step;
+    for (int y = 0; y < wash->height; y++)
+        for (int x = 0; x < wash->width; x++) {
+            const size_t row = (size_t)wash->width, p = (size_t)y * row + (size_t)x;
+            const float dx = tone[p + (x + 1 < wash->width)] - tone[p];
+            const float dy = tone[p + (y + 1 < wash->height ? row : 0)] - tone[p];
+            wash->plane[FL_WASH_ROUGH][p] = fminf(14 * px * sqrtf(dx * dx + dy * dy), .25f);
+        }
+}
+
 static void put_together(const FlWashField *field)
 {
     const FlWash *wash = field->wash;
@@ -77,6 +92,7 @@ static void put_together(const FlWashField *field)
         wash->plane[FL_WASH_CALM][i] =
             MIN(washed * wash->style.wash, 1) * (calm * middle + lost * (1 - middle));
     }
+    find_rough(field);
     fl_wash_find_tones(wash, tones, hues);
     fl_field_centre(field, tones, breadth, tone);
     fl_field_centre(field, hues, share_of_hue, hue);
@@ -161,6 +177,7 @@ static void find_across(FlWashField *field)
     if (field->input->directions.image)
         angle = fl_direction_at(&field->input->directions, at->rest_x, at->rest_y, at->side, angle);
     field->across[0] = -sinf(angle), field->across[1] = cosf(angle);
+    field->wash->along[0] = cosf(angle), field->wash->along[1] = sinf(angle);
 }
 
 static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input,
