@@ -83,7 +83,7 @@ def draw_layers():
     pencil.layers.remove(pencil.layers[0])
     pencil.materials.clear()
     red = material(pencil, fill_color=(0.4, 0.03, 0.01, 1))
-    linear = material(pencil, fill_color=(0.8, 0.4, 0.05, 1), mix_color=(0.02, 0.1, 0.5, 1), mix_factor=0.2,
+    linear = material(pencil, fill_color=(0.9, 0.5, 0.05, 1), mix_color=(0.1, 0.02, 0.4, 1), mix_factor=0,
                       fill_style='GRADIENT')
     radial = material(pencil, fill_color=(0.8, 0.8, 0.1, 1), mix_color=(0.3, 0, 0.2, 1), mix_factor=0, flip=True,
                       fill_style='GRADIENT', gradient_type='RADIAL', texture_angle=0.4, texture_scale=(3, 2))

@@ -173,7 +173,7 @@ def ribbon(points, radii, closed, flat):
 
 
 def gradient(page, material, stroke, placed, colour_of):
-    """The id of the gradient of a fill; Blender mixes it in linear light, hence nine stops."""
+    """The id of the gradient of a fill; Blender mixes it in linear light, hence so many stops."""
     (u0, v0), rows = stroke.uv[0], []
     for other in range(1, len(placed)):  # two edges that are not parallel give the map from texture to page
         rows.append((stroke.uv[other][0] - u0, stroke.uv[other][1] - v0,
@@ -198,9 +198,9 @@ def gradient(page, material, stroke, placed, colour_of):
                b * turn[2] + d * turn[3], a * px + c * py + e, b * px + d * py + f)
     ends = [(material.fill_color, material.mix_color)[i != material.flip] for i in (0, 1)]
     solid, factor = colour_of(ends[0]), material.mix_factor  # tints are of the share that is no gradient
-    stops = ''.join(f'<stop offset="{i / 8}" stop-color="{srgb(mixed(mixed(*ends, i / 8), solid, factor))}" '
-                    f'stop-opacity="{ends[0][3] + (ends[1][3] - ends[0][3]) * i / 8 * (1 - factor):.3f}"/>'
-                    for i in range(9))
+    stops = ''.join(f'<stop offset="{i / 32}" stop-color="{srgb(mixed(mixed(*ends, i / 32), solid, factor))}" '
+                    f'stop-opacity="{ends[0][3] + (ends[1][3] - ends[0][3]) * i / 32 * (1 - factor):.3f}"/>'
+                    for i in range(33))
     name, radial = f'gradient{len(page.defs)}', material.gradient_type == 'RADIAL'
     shape = 'cx="0.5" cy="0.5" r="0.5"' if radial else 'x1="0" y1="0" x2="1" y2="0"'
     kind = 'radialGradient' if radial else 'linearGradient'
