@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import zipfile
 
 program, fixtures = (os.path.abspath(path) for path in sys.argv[1:3])
@@ -163,9 +164,14 @@ with open("linked.fluidy", "wb") as file:
         archive.writestr("look.conf", conf)
         archive.writestr(link, "/etc/passwd")
     file.write(memory.getvalue())
+for part, days in ("aa.killed", 2), ("bb.atwork", 0):
+    os.makedirs(os.path.join("cache/fluidy-svg/looks", part, "files"))
+    os.utime(os.path.join("cache/fluidy-svg/looks", part), (time.time() - 86400 * days,) * 2)
 good, text = paint("linked", "--look", "linked.fluidy")
 links = [file for path, _, found in os.walk("cache") for file in found
          if os.path.islink(os.path.join(path, file))]
 report("a link in a look is unpacked as a file", good and not links, text + str(links))
+parts = [name for name in os.listdir("cache/fluidy-svg/looks") if "." in name]
+report("what is left of a look whose unpacking was killed goes after a day", parts == ["bb.atwork"], str(parts))
 print(f"1..{n_tests}")
 shutil.rmtree(folder)

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum { MOST_FILES = 4096, LONGEST_NAME = 200 };
 
@@ -116,6 +117,19 @@ static void remove_folder(const char *path)
     g_rmdir(path);
 }
 
+/* Removes folders in which looks were unpacked until a day ago by processes that were killed. */
+static void remove_leftovers(const char *parent)
+{
+    g_autoptr(GDir) dir = g_dir_open(parent, 0, NULL);
+    for (const char *name; dir && (name = g_dir_read_name(dir));) {
+        g_autofree char *path = g_build_filename(parent, name, NULL);
+        GStatBuf about;
+        if (strchr(name, '.') && g_stat(path, &about) == 0 &&
+            about.st_mtime < time(NULL) - 24 * 3600)
+            remove_folder(path);
+    }
+}
+
 /* Unpacks beside the folder, which then appears whole; another process may have been faster. */
 static bool unpack_beside(Unpacking *unpacking, const char *folder, GError **error)
 {
@@ -124,6 +138,7 @@ static bool unpack_beside(Unpacking *unpacking, const char *folder, GError **err
     if (g_mkdir_with_parents(parent, 0700) != 0 || !g_mkdtemp(beside))
         return fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot be written: %s", parent,
                        g_strerror(errno));
+    remove_leftovers(parent);
     unpacking->folder = beside;
     bool done = unpack_files(unpacking, error);
     if (done && g_rename(beside, folder) != 0 && errno != EEXIST && errno != ENOTEMPTY)
