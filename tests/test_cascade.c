@@ -376,6 +376,8 @@ static void gaps_of_librsvg_are_filled(void)
 {
     assert_value("<polygon id='a' points='0 0 9,0 9 9 5'/>", "points", "0 0 9,0 9 9");
     assert_value("<polygon id='a' points='0 0;9 0;9 9'/>", "points", "0 0");
+    assert_value("<filter id='f'/><g transform='rotate(90)'><path id='a' filter='url(#f)'/></g>",
+                 "filter", "url(#f)");
     assert_value("<clipPath id='e'/><clipPath id='c' clip-path='url(#e)'/>"
                  "<path id='a' transform='scale(2)' clip-path='url(#c)'/>",
                  "clip-path", "url(#e)"); // of the group around
@@ -405,6 +407,8 @@ static void gaps_of_librsvg_are_filled(void)
     g_autoptr(FlSvg) svg =
         open_svg_of("<filter><feFlood/><feDropShadow dx='1' result='r'/></filter>"
                     "<linearGradient x2='0'><stop id='s' offset='.123'/><stop/></linearGradient>"
+                    "<filter id='t'><feGaussianBlur stdDeviation='3'/></filter>"
+                    "<g transform='rotate(45)'><path filter='url(#t)' transform='scale(2)'/></g>"
                     "<use href='#s'/><symbol id='w' width='7' height='5'/><use href='#w'/>"
                     "<image href='data:image/svg+xml,%3csvg xmlns=\"http://www.w3.org/2000/svg\" "
                     "width=\"2\" height=\"1\"/%3e'/>");
@@ -412,6 +416,7 @@ static void gaps_of_librsvg_are_filled(void)
     g_autofree char *text = fl_document_text(fl_svg_document(svg), &bytes);
     g_assert_nonnull(strstr(text, "<feMerge dx=\"1\" result=\"r\""));
     g_assert_nonnull(strstr(text, "<feMergeNode in=\"fl-before-0\"/>"));
+    g_assert_nonnull(strstr(text, "stdDeviation=\"0 4.24264069\""));
     g_assert_null(strstr(text, "<stop id"));
     g_assert_nonnull(strstr(text, "svg\" width=\"7\" height=\"5\" overflow"));
     g_assert_nonnull(strstr(text, "svg+xml;base64,"));

@@ -6,6 +6,8 @@
 #include "svg/document.h"
 #include "svg/geometry.h"
 #include "svg/normalise.h"
+#include "svg/transform.h"
+#include <math.h>
 #include <string.h>
 
 #define MOST_CLIPS 16 // of clip paths that clip each other
@@ -79,6 +81,71 @@ static void mend_shadow(xmlNode *node, int number)
     fl_set_attribute(xmlNewChild(node, node->ns, (const xmlChar *)"feMergeNode", NULL), "in", in);
 }
 
+/* ---- blurs of what is turned --------------------------------------------------------------- */
+
+/** The element of that kind that a property of a node refers to; NULL without one. */
+static xmlNode *referred_by(const xmlNode *node, const char *property, const char *kind,
+                            GHashTable *ids)
+{
+    g_autofree char *value = fl_property(node, property);
+    g_autofree char *reference = value ? fl_css_string_or_url(value) : NULL;
+    xmlNode *found =
+        reference && *reference == '#' ? g_hash_table_lookup(ids, reference + 1) : NULL;
+    return found && fl_is(found, kind) ? found : NULL;
+}
+
+/** Gives a blur the two deviations that the map m, as librsvg applies it, makes equal. */
+static void turn_blur(xmlNode *step, const FlAffine *m)
+{
+    g_autoptr(xmlChar) text = fl_attribute(step, "stdDeviation");
+    const char *s = text ? (const char *)text : fl_is(step, "feDropShadow") ? "2" : "0";
+    double across, down;
+    if (!fl_number_read(&s, &across))
+        return;
+    s += strspn(s, FL_CSS_SPACE ",");
+    if (fl_number_read(&s, &down) && down != across)
+        return; // librsvg has no blur across the axes
+    const double determinant = m->xx * m->yy - m->xy * m->yx;
+    const double px = across * sqrt(fabs(determinant));
+    for (int k = 0; k < 4; k++) { // the sign of a deviation does not count after the map
+        const double x = k & 1 ? -1 : 1, y = k & 2 ? -1 : 1;
+        const double a = (m->yy * x - m->xy * y) / determinant;
+        const double b = (m->xx * y - m->yx * x) / determinant;
+        g_autofree char *first = fl_css_number_text(px * fmax(a, 0)),
+                        *second = fl_css_number_text(px * fmax(b, 0));
+        g_autofree char *both = g_strdup_printf("%s %s", first, second);
+        if (a > -1e-9 && b > -1e-9)
+            fl_set_attribute(step, "stdDeviation", both);
+    }
+}
+
+/** librsvg turns the deviations of a blur across and down like a way: at 45 degrees it blurs in one
+ * direction only. What is turned gets a filter of its own, whose blurs come out round. */
+static void mend_blur(xmlNode *node, GHashTable *ids, int *n_made)
+{
+    xmlNode *filter = referred_by(node, "filter", "filter", ids);
+    FlAffine m = FL_AFFINE_NONE;
+    for (const xmlNode *at = node; filter && at && at->type == XML_ELEMENT_NODE; at = at->parent) {
+        const FlAffine own = fl_affine_of(at);
+        m = fl_affine_multiply(&own, &m);
+    }
+    const bool upright = (m.xy == 0 && m.yx == 0) || (m.xx == 0 && m.yy == 0);
+    g_autofree char *units = filter ? fl_property(filter, "primitiveUnits") : NULL;
+    if (!filter || upright || m.xx * m.yy == m.xy * m.yx ||
+        (units && strcmp(units, "objectBoundingBox") == 0))
+        return;
+    g_autofree char *id = g_strdup_printf("fl-turned-%d", (*n_made)++);
+    g_autofree char *declaration = g_strdup_printf("filter:url(#%s)", id);
+    xmlNode *turned = xmlAddNextSibling(filter, xmlDocCopyNode(filter, filter->doc, 1));
+    fl_set_attribute(turned, "id", id);
+    fl_declare(node, declaration);
+    for (xmlNode *step = turned->children; step; step = step->next)
+        if (fl_is(step, "feGaussianBlur") || fl_is(step, "feDropShadow"))
+            turn_blur(step, &m);
+}
+
+/* ---- numbers of filters ---------------------------------------------------------------------- */
+
 /** Drops numbers that cannot be read, for which librsvg would leave out all that is filtered. */
 static void mend_numbers(xmlNode *step)
 {
@@ -144,15 +211,6 @@ static void mend_points(xmlNode *node)
 
 /* ---- clip paths that are clipped ------------------------------------------------------------- */
 
-/** The <clipPath> of an element; NULL without one. */
-static xmlNode *clip_of(const xmlNode *node, GHashTable *ids)
-{
-    g_autofree char *value = fl_property(node, "clip-path");
-    g_autofree char *reference = value ? fl_css_string_or_url(value) : NULL;
-    xmlNode *clip = reference && *reference == '#' ? g_hash_table_lookup(ids, reference + 1) : NULL;
-    return clip && fl_is(clip, "clipPath") ? clip : NULL;
-}
-
 /** Puts an element into a group, which takes its id and transform and the clip of its clip path. */
 static xmlNode *wrap(xmlNode *node, const xmlNode *clip)
 {
@@ -179,10 +237,13 @@ static xmlNode *wrap(xmlNode *node, const xmlNode *clip)
 /** librsvg leaves the clip of a clip path out: a group around what is clipped has it instead. */
 static void mend_clip(xmlNode *node, GHashTable *ids)
 {
-    const xmlNode *clip = clip_of(node, ids);
-    for (int depth = 0; clip && clip_of(clip, ids) && depth < MOST_CLIPS; depth++) {
+    const xmlNode *clip = referred_by(node, "clip-path", "clipPath", ids);
+    for (int depth = 0; clip && depth < MOST_CLIPS; depth++) {
+        const xmlNode *outer = referred_by(clip, "clip-path", "clipPath", ids);
+        if (!outer)
+            return;
         node = wrap(node, clip);
-        clip = clip_of(node, ids);
+        clip = outer;
     }
 }
 
@@ -307,14 +368,14 @@ static void mend_words(xmlNode *node)
 
 /* ---- the document ---------------------------------------------------------------------------- */
 
-static void mend(xmlNode *node, GHashTable *ids, int *n_shadows, int *n_copied)
+static void mend(xmlNode *node, GHashTable *ids, int *n_made, int *n_copied)
 {
     static const char *const gradients[] = {"linearGradient", "radialGradient", NULL};
     static const char *const with_points[] = {"polygon", "polyline", NULL};
     if (node->ns && g_str_has_prefix((const char *)node->name, "fe"))
         mend_numbers(node);
     if (fl_is(node, "feDropShadow"))
-        mend_shadow(node, (*n_shadows)++);
+        mend_shadow(node, (*n_made)++);
     else if (fl_is_one_of(node, gradients))
         mend_gradient(node);
     else if (fl_is_one_of(node, with_points))
@@ -330,7 +391,8 @@ static void mend(xmlNode *node, GHashTable *ids, int *n_shadows, int *n_copied)
         if (child->type != XML_ELEMENT_NODE)
             continue;
         mend_words(child);
-        mend(child, ids, n_shadows, n_copied);
+        mend(child, ids, n_made, n_copied);
+        mend_blur(child, ids, n_made);
         if (!fl_is(child, "clipPath") && !fl_is(node, "clipPath"))
             mend_clip(child, ids);
     }
@@ -339,7 +401,7 @@ static void mend(xmlNode *node, GHashTable *ids, int *n_shadows, int *n_copied)
 bool fl_document_mend(xmlDoc *doc, const char *path, GError **error)
 {
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
-    int n_shadows = 0, n_copied = 0;
-    mend(xmlDocGetRootElement(doc), ids, &n_shadows, &n_copied);
+    int n_made = 0, n_copied = 0;
+    mend(xmlDocGetRootElement(doc), ids, &n_made, &n_copied);
     return fl_limit_check(FL_LIMIT_ELEMENTS, n_copied, path, error);
 }
