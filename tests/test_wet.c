@@ -472,6 +472,30 @@ static void test_frayed(void)
     g_assert_cmpfloat(sides, <, 0.8 * middle);
 }
 
+/* A cell after a front that has not come to it, over a stain and so much of an earlier front. */
+static FlWetCell cell_before_front(float front)
+{
+    Scene *scene = scene_new();
+    const FlFrontMark mark = {.at = 5, .density = 0.5f, .edge = -1.5f, .ink = {0, 0, 1}};
+    scene->sheet.cell[mark.at] =
+        (FlWetCell){.front = front, .edge = 1.6f, .stain = 0.2f, .film = 0.2f, .ink = {1, 0, 0}};
+    g_array_append_val(scene->fronts, mark);
+    fl_wet_sheet_wet(&scene->sheet, &plain, 1, scene->fronts);
+    const FlWetCell cell = scene->sheet.cell[mark.at];
+    scene_free(scene);
+    return cell;
+}
+
+/* The end of a front is its own over what is left of another, and the stain keeps its colour. */
+static void test_front_over_stain(void)
+{
+    const FlWetCell left = cell_before_front(0.01f), wet = cell_before_front(0.4f);
+    g_assert_cmpfloat(left.front, >, 0.2f);
+    g_assert_cmpfloat(left.edge, <, -1);
+    g_assert_cmpfloat(left.ink[2], <, 0.02f);
+    g_assert_cmpfloat(wet.edge, >, 1.4f);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -483,6 +507,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/stains-break-up-where-they-begin", test_start);
     g_test_add_func("/wet/paint-that-passes-takes-up-a-stain", test_taken_up);
     g_test_add_func("/wet/a-stain-breaks-up-towards-its-sides", test_frayed);
+    g_test_add_func("/wet/a-front-ends-alike-on-stains", test_front_over_stain);
     g_test_add_func("/wet/a-few-fingers-are-long-and-many-short", test_fingers);
     g_test_add_func("/wet/what-rests-marks-nothing", test_rest);
     g_test_add_func("/wet/what-vanishes-leaves-less-than-what-recedes", test_vanish);

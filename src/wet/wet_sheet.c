@@ -297,7 +297,10 @@ void fl_wet_sheet_wet(FlWetSheet *sheet, const FlFrontStyle *style, float frames
         cell->edge += share * MAX(mark->edge - cell->edge, 0);
         if (more <= 0)
             continue;
-        add_ink(cell, more, mark->ink, style->granulation);
+        const float new = more / (more + 4 * cell->front); // what is left of another front is weak
+        cell->edge += new *MIN(mark->edge - cell->edge, 0);
+        const float seen = 0.02f + 0.98f * fl_ease(-0.5f, 1, cell->edge); // a stain keeps its ink
+        add_ink(cell, seen * more, mark->ink, style->granulation);
         cell->line = between(cell->line, mark->line, more / (cell->front + more));
         cell->front += more;
     }
@@ -424,7 +427,7 @@ static void shine_through(const FlWetSheet *sheet, FlColumns columns, const Laye
         const float film = m[FILM][x] * fl_ease(0, 0.9f, (1.2f + 3.6f * late - age) / 1.6f);
         const float coarse = CLAMP(1 - 0.55f * g + 1.1f * g * (hollow - 0.5f), 0.1f, 1.4f);
         const float pigment = m[STAIN][x] * left_of(sheet, age, hollow) * coarse;
-        const float frayed = frayed_to(sheet, hollow, spot) * (1 - MIN(3 * m[FRONT][x], 1));
+        const float frayed = frayed_to(sheet, hollow, spot) * (1 - MIN(3 * front, 1));
         const float sides = fl_ease(-0.5f, soft, (m[DEPTH][x] - frayed) * cell_px) / stains;
         const float stain = MIN(sides * (film + pigment - film * pigment / stains), 1);
         const float dense = STRENGTH * (1 - (1 - stain) * (1 - front)) / paint;
