@@ -489,8 +489,11 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     fl_params_scale_lengths(&painted->settings.params, px);
     list_style(plan, painted->settings.style);
     painted->style = fl_style_cache_get(plan->styles, &painted->settings, px, error);
-    if (!painted->style)
+    if (!painted->style) {
+        if (r->label && strstr(r->label, painted->settings.style))
+            g_prefix_error(error, "layer “%s”: ", r->label);
         return false;
+    }
     if (fl_field_px(painted->style->exemplar) == 2)
         fl_params_scale_lengths(&painted->settings.params, .5f);
     painted->engine = fl_engine_choose(painted->settings.engine, painted->style->path);
