@@ -21,10 +21,10 @@ static uint8_t one_back[ONE + 1], three_back[THREE + 1];
 static uint8_t *packed(size_t *used)
 {
     const FlSpan spans[] = {{one, ONE}, {NULL, TWO}, {three, THREE}};
-    const size_t room = fl_compress_bound(spans, 3);
-    uint8_t *bytes = g_malloc(room);
     fill(one, three);
-    *used = fl_compress(spans, 3, bytes, room);
+    g_autoptr(GBytes) all = fl_pack(NULL, 0, spans, 3, NULL);
+    uint8_t *bytes = g_memdup2(g_bytes_get_data(all, NULL), g_bytes_get_size(all));
+    *used = g_bytes_get_size(all);
     g_assert_cmpint(*used, >, THREE);
     g_assert_cmpint(*used, <, THREE + ONE / 10);
     return bytes;
@@ -33,7 +33,7 @@ static uint8_t *packed(size_t *used)
 static bool unpacks(const uint8_t *bytes, size_t used, size_t first, size_t last)
 {
     const FlSpan spans[] = {{one_back, first}, {NULL, TWO}, {three_back, last}};
-    return fl_decompress(bytes, used, spans, 3);
+    return fl_unpack(bytes, used, spans, 3);
 }
 
 static void spans_come_back_as_they_were(void)

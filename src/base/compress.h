@@ -14,26 +14,20 @@ typedef struct FlSpan {
     size_t bytes;
 } FlSpan;
 
-/** An upper bound of the compressed size of parts. */
-size_t fl_compress_bound(const FlSpan *parts, int n);
-
-/** Compresses parts into `to`, without a checksum: a file has one for its whole content.
- * Returns: the bytes used; 0: out of memory. */
-size_t fl_compress(const FlSpan *parts, int n, uint8_t *to, size_t capacity);
-
-/** Fills the parts. Returns: false if `from` is not exactly these parts, whose contents are then
- * undefined. `from` need not be trusted, but altered bytes may remain undetected. */
-bool fl_decompress(const uint8_t *from, size_t bytes, const FlSpan *parts, int n);
-
-/* ---- states of engines ----------------------------------------------------------------------- */
-
 /**
- * Packs a header of `size` bytes (NULL: no header) and then `n` parts, which may be 0.
+ * Packs a header of `size` bytes as it is (NULL: no header), and then `n` parts, which may be 0,
+ * without a checksum: a file has one for its whole content.
  *
  * Returns: to be freed with g_bytes_unref(); NULL with FL_ERROR_NO_MEMORY.
  */
-GBytes *fl_state_bytes_pack(const void *header, size_t size, const FlSpan *parts, int n,
-                            GError **error);
+GBytes *fl_pack(const void *header, size_t size, const FlSpan *parts, int n, GError **error);
+
+/** Fills the parts from the bytes behind a header. Returns: false if these are not exactly the
+ * parts, whose contents are then undefined. The bytes need not be trusted, but altered ones may
+ * remain undetected. */
+bool fl_unpack(const uint8_t *from, size_t bytes, const FlSpan *parts, int n);
+
+/* ---- states of engines ----------------------------------------------------------------------- */
 
 /** Sets FL_ERROR_CHANGED: a region's state is damaged, and `what`. Returns: false. */
 bool fl_state_bytes_damaged(const char *what, GError **error);

@@ -13,8 +13,8 @@
 
 typedef struct Block {
     int64_t offset;
-    size_t packed_bytes; // 0: not stored
-    size_t bytes;
+    size_t packed_bytes, bytes;
+    bool stored;
 } Block;
 
 struct FlSpill {
@@ -93,18 +93,15 @@ bool fl_spill_put(FlSpill *spill, size_t block, const void *data, size_t bytes, 
 {
     g_assert(block < spill->n_blocks);
     const FlSpan part = {(void *)(uintptr_t)data, bytes}; // const: the data is only read
-    const size_t room = fl_compress_bound(&part, 1);
-    g_autofree uint8_t *packed = fl_alloc_scratch(room, 1, "a temporary block", error);
+    g_autoptr(GBytes) packed = fl_pack(NULL, 0, &part, 1, error);
     if (!packed)
         return false;
-    const size_t packed_bytes = fl_compress(&part, 1, packed, room);
-    if (packed_bytes == 0)
-        return fl_fail(error, FL_ERROR_NO_MEMORY, "not enough memory for a temporary block");
+    const size_t packed_bytes = g_bytes_get_size(packed);
     const int64_t offset = reserve(packed_bytes);
-    if (!fl_pwrite_all(shared.fd, packed, packed_bytes, offset))
+    if (!fl_pwrite_all(shared.fd, g_bytes_get_data(packed, NULL), packed_bytes, offset))
         return fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot write a temporary file: %s",
                        g_get_tmp_dir(), g_strerror(errno));
-    spill->blocks[block] = (Block){offset, packed_bytes, bytes};
+    spill->blocks[block] = (Block){offset, packed_bytes, bytes, true};
     return true;
 }
 
@@ -116,7 +113,7 @@ static bool cannot_read(const char *why, GError **error)
 
 bool fl_spill_get(const FlSpill *spill, size_t block, void *data, size_t bytes, GError **error)
 {
-    g_assert(block < spill->n_blocks && spill->blocks[block].packed_bytes > 0 &&
+    g_assert(block < spill->n_blocks && spill->blocks[block].stored &&
              spill->blocks[block].bytes == bytes);
     const Block *b = &spill->blocks[block];
     g_autofree uint8_t *packed = fl_alloc_unset(b->packed_bytes, 1, "a temporary block", error);
@@ -125,12 +122,12 @@ bool fl_spill_get(const FlSpill *spill, size_t block, void *data, size_t bytes, 
     if (!fl_pread_all(shared.fd, packed, b->packed_bytes, b->offset))
         return cannot_read(errno ? g_strerror(errno) : "it is shorter than what was written",
                            error);
-    return fl_decompress(packed, b->packed_bytes, &(FlSpan){data, bytes}, 1) ||
+    return fl_unpack(packed, b->packed_bytes, &(FlSpan){data, bytes}, 1) ||
            cannot_read("it is damaged", error);
 }
 
 size_t fl_spill_bytes(const FlSpill *spill, size_t block)
 {
-    g_assert(block < spill->n_blocks && spill->blocks[block].packed_bytes > 0);
+    g_assert(block < spill->n_blocks && spill->blocks[block].stored);
     return spill->blocks[block].bytes;
 }

@@ -28,7 +28,7 @@ bool fl_painted_pack(FlPaintedRegion *painted, GError **error)
     const FlSpan picture = span_of(painted, painted->painted);
     if (!painted->painted)
         return true;
-    painted->packed = fl_state_bytes_pack(NULL, 0, &picture, 1, error);
+    painted->packed = fl_pack(NULL, 0, &picture, 1, error);
     if (!painted->packed)
         return false;
     free(painted->painted);

@@ -41,7 +41,7 @@ GBytes *fl_lazy_state_pack(const FlLazyState *state, GError **error)
     const Header header = {state->frame, state->valid, state->width, state->height};
     FlSpan parts[N_PARTS];
     parts_of(state, parts);
-    return fl_state_bytes_pack(&header, sizeof header, parts, state->valid ? N_PARTS : 0, error);
+    return fl_pack(&header, sizeof header, parts, state->valid ? N_PARTS : 0, error);
 }
 
 static bool unpack(FlLazyState *state, GBytes *bytes, const FlExemplarLevel *level, GError **error)

@@ -172,7 +172,7 @@ bool fl_reuse_take(FlReuse *reuse, uint8_t *rgb, size_t bytes)
     g_autoptr(GBytes) kept = fl_store_get(reuse->cache, FL_KEPT_PICTURE, reuse->last);
     FlSpan packed = {0};
     g_autoptr(GBytes) state = kept ? take_state(kept, &packed) : NULL;
-    if (state && fl_decompress(packed.data, packed.bytes, &(FlSpan){rgb, bytes}, 1)) {
+    if (state && fl_unpack(packed.data, packed.bytes, &(FlSpan){rgb, bytes}, 1)) {
         g_clear_pointer(&reuse->state, g_bytes_unref);
         reuse->state = g_steal_pointer(&state);
         reuse->state_of = reuse->last;
@@ -197,14 +197,14 @@ void fl_reuse_keep(FlReuse *reuse, const uint8_t *rgb, size_t bytes, GBytes *sta
     gsize state_bytes;
     const void *data = g_bytes_get_data(state, &state_bytes);
     const FlSpan picture = {(void *)(uintptr_t)rgb, bytes}; // read only
-    const size_t room = fl_compress_bound(&picture, 1);
-    g_autofree uint8_t *packed = fl_alloc(room, 1, "a picture", NULL);
-    const size_t packed_bytes = packed ? fl_compress(&picture, 1, packed, room) : 0;
+    g_autoptr(GBytes) packed = fl_pack(NULL, 0, &picture, 1, NULL);
     uint64_t first = state_bytes;
-    if (packed_bytes == 0)
+    if (!packed)
         return; // without memory the picture is not cached; the next render paints it again
     const FlSpan parts[] = {
-        {&first, sizeof first}, {(void *)(uintptr_t)data, state_bytes}, {packed, packed_bytes}};
+        {&first, sizeof first},
+        {(void *)(uintptr_t)data, state_bytes},
+        {(void *)(uintptr_t)g_bytes_get_data(packed, NULL), g_bytes_get_size(packed)}};
     fl_store_put(reuse->cache, FL_KEPT_PICTURE, reuse->last, parts, G_N_ELEMENTS(parts));
 }
 

@@ -108,7 +108,7 @@ GBytes *fl_synth_state_pack(const FlSynthState *state, GError **error)
         return NULL;
     FlSpan parts[N_PARTS];
     parts_of(state, matches, parts);
-    return fl_state_bytes_pack(&header, sizeof header, parts, state->valid ? N_PARTS : 0, error);
+    return fl_pack(&header, sizeof header, parts, state->valid ? N_PARTS : 0, error);
 }
 
 GBytes *fl_synth_state_later(GBytes *bytes, int frame)

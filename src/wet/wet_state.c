@@ -94,7 +94,7 @@ GBytes *fl_wet_save(const FlWet *wet, GError **error)
     fl_rect_copy(wet->sheet.cell, wet->sheet.page, state.cells, state.sheet->wet,
                  sizeof(FlWetCell));
     list_parts(&state, wet);
-    return fl_state_bytes_pack(state.sheet, state.bytes, &g_array_index(state.parts, FlSpan, 0),
+    return fl_pack(state.sheet, state.bytes, &g_array_index(state.parts, FlSpan, 0),
                                (int)state.parts->len, error);
 }
 

@@ -47,15 +47,14 @@ static bool pack(const FlDraw *draw, GByteArray *to, GError **error)
     FlSpan parts[N_PLANES];
     for (int k = 0; k < N_PLANES; k++)
         parts[k] = part_of(draw, header.planes, k);
-    const size_t capacity = fl_compress_bound(parts, N_PLANES);
-    g_autofree uint8_t *data = fl_alloc_scratch(capacity, 1, "a packed drawing", error);
-    if (!data)
+    g_autoptr(GBytes) packed = fl_pack(NULL, 0, parts, N_PLANES, error);
+    if (!packed)
         return false;
-    header.bytes = fl_compress(parts, N_PLANES, data, capacity);
-    if (header.bytes == 0 || header.bytes > INT_MAX - to->len - sizeof header)
+    header.bytes = g_bytes_get_size(packed);
+    if (header.bytes > INT_MAX - to->len - sizeof header)
         return fl_fail(error, FL_ERROR_NO_MEMORY, "not enough memory to pack a drawing");
     g_byte_array_append(to, (const uint8_t *)&header, sizeof header);
-    g_byte_array_append(to, data, (guint)header.bytes);
+    g_byte_array_append(to, g_bytes_get_data(packed, NULL), (guint)header.bytes);
     return true;
 }
 
@@ -120,7 +119,7 @@ static bool unpack(FlReader *reader, const FlDrawBounds *bounds, FlDraw *draw, G
         return false;
     for (int k = 0; k < N_PLANES; k++)
         parts[k] = part_of(draw, header.planes, k);
-    const bool whole = fl_decompress(reader->at, header.bytes, parts, N_PLANES);
+    const bool whole = fl_unpack(reader->at, header.bytes, parts, N_PLANES);
     reader->at += header.bytes, reader->left -= header.bytes;
     return fl_take_check(reader, whole && are_within(&draw->area));
 }
