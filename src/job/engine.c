@@ -4,6 +4,14 @@
 #include "transport/carried_ink.h"
 #include <string.h>
 
+/* Engines are called with their states as void pointers. */
+typedef void (*Close)(void *state);
+typedef void (*Measure)(void *state, bool energies);
+typedef bool (*Rest)(void *state);
+typedef bool (*Pairs)(const void *state, FlGuidePairs *pairs, GError **error);
+typedef GBytes *(*Save)(void *state, GError **error);
+typedef bool (*Load)(void *state, GBytes *bytes, GError **error);
+
 /* ---- patch: a field of matches into the recording, then the vote [F21] ------------------------
  */
 
@@ -13,16 +21,6 @@ static void *patch_open(const FlEngineInput *input, GError **error)
         fl_synth_new(input->style->exemplar, &input->settings->params, input->size, input->seed);
     fl_synth_stop_by(synth, input->stop);
     return synth;
-}
-
-static void patch_close(void *state)
-{
-    fl_synth_free(state);
-}
-
-static void patch_measure(void *state, bool energies)
-{
-    fl_synth_measure(state, energies);
 }
 
 static bool patch_frame(void *state, FlGuides *guides, const FlEnginePaint *paint, GError **error)
@@ -35,26 +33,6 @@ static int patch_drying(const FlStyleInstance *style, const FlParams *params)
     return fl_synth_dries(style->exemplar, params) ? FL_DRYING_FRAMES : 0;
 }
 
-static bool patch_rest(void *state)
-{
-    return fl_synth_rest(state);
-}
-
-static bool patch_guide_pairs(const void *state, FlGuidePairs *pairs, GError **error)
-{
-    return fl_synth_guide_pairs(state, pairs, error);
-}
-
-static GBytes *patch_save(void *state, GError **error)
-{
-    return fl_synth_save(state, error);
-}
-
-static bool patch_load(void *state, GBytes *bytes, GError **error)
-{
-    return fl_synth_load(state, bytes, error);
-}
-
 /* ---- lazyfluids: an exemplar that rides on the motion, used equally [L15] -----------------------
  */
 
@@ -62,16 +40,6 @@ static void *lazy_open(const FlEngineInput *input, GError **error)
 {
     return fl_lazy_new(input->style->exemplar, &input->settings->params,
                        input->settings->recording_end, input->size, input->seed, error);
-}
-
-static void lazy_close(void *state)
-{
-    fl_lazy_free(state);
-}
-
-static void lazy_measure(void *state, bool energies)
-{
-    fl_lazy_measure(state, energies);
 }
 
 static bool lazy_frame(void *state, FlGuides *guides, const FlEnginePaint *paint, GError **error)
@@ -82,21 +50,6 @@ static bool lazy_frame(void *state, FlGuides *guides, const FlEnginePaint *paint
 static float lazy_reach(const FlStyleInstance *style, const FlParams *params)
 {
     return style->exemplar->cut_out ? fl_lazy_reach(style->exemplar, params) : 0;
-}
-
-static bool lazy_guide_pairs(const void *state, FlGuidePairs *pairs, GError **error)
-{
-    return fl_lazy_guide_pairs(state, pairs, error);
-}
-
-static GBytes *lazy_save(void *state, GError **error)
-{
-    return fl_lazy_save(state, error);
-}
-
-static bool lazy_load(void *state, GBytes *bytes, GError **error)
-{
-    return fl_lazy_load(state, bytes, error);
 }
 
 /* ---- transport: the region's own ink, moved by the style's tile [KAGS19] ------------------------
@@ -165,24 +118,24 @@ static const FlEngine engines[] = {
                          .enlarges = true,
                          .plays = true,
                          .open = patch_open,
-                         .close = patch_close,
-                         .measure = patch_measure,
+                         .close = (Close)fl_synth_free,
+                         .measure = (Measure)fl_synth_measure,
                          .frame = patch_frame,
-                         .rest = patch_rest,
+                         .rest = (Rest)fl_synth_rest,
                          .drying = patch_drying,
-                         .guide_pairs = patch_guide_pairs,
-                         .save = patch_save,
-                         .load = patch_load},
+                         .guide_pairs = (Pairs)fl_synth_guide_pairs,
+                         .save = (Save)fl_synth_save,
+                         .load = (Load)fl_synth_load},
     [FL_ENGINE_LAZYFLUIDS] = {.name = "lazyfluids",
                               .reach = lazy_reach,
                               .plays = true,
                               .open = lazy_open,
-                              .close = lazy_close,
-                              .measure = lazy_measure,
+                              .close = (Close)fl_lazy_free,
+                              .measure = (Measure)fl_lazy_measure,
                               .frame = lazy_frame,
-                              .guide_pairs = lazy_guide_pairs,
-                              .save = lazy_save,
-                              .load = lazy_load},
+                              .guide_pairs = (Pairs)fl_lazy_guide_pairs,
+                              .save = (Save)fl_lazy_save,
+                              .load = (Load)fl_lazy_load},
     [FL_ENGINE_TRANSPORT] = {.name = "transport",
                              .claims = fl_tile_exists,
                              .exposure = transport_exposure,
