@@ -122,7 +122,7 @@ static void files_override_those_that_they_include(void)
     g_assert_cmpstr(config->rules[0].name, ==, "coat");
     g_assert_cmpstr(config->rules[1].match_fill[0], ==, "#aa0000");
     g_auto(FlRegionSettings) hat = {0};
-    fl_config_region_settings(config, 1, "hat", (FlGiven){0}, NULL, &hat, &error);
+    fl_config_region_settings(config, 1, "hat", NULL, &hat);
     g_assert_no_error(error);
     g_assert_cmpint(hat.hold, ==, 4);
     g_assert_cmpfloat(hat.params.carry, ==, 1);
@@ -193,11 +193,10 @@ static void keyed_numbers_are_linear_between_keys(void)
 {
     g_autoptr(FlConfig) config = load("[defaults]\ncarry = 0.25@-4 0.75@4  0.5@6\nload = 0@1 1@3\n"
                                       "[region b]\ncarry = 0.5\n[region c]\npreset = thesis\n");
-    const FlGiven given = {0};
     g_auto(FlRegionSettings) a, b, c;
-    g_assert_true(fl_config_region_settings(config, -1, "a", given, NULL, &a, NULL));
-    g_assert_true(fl_config_region_settings(config, 0, "b", given, NULL, &b, NULL));
-    g_assert_true(fl_config_region_settings(config, 1, "c", given, NULL, &c, NULL));
+    fl_config_region_settings(config, -1, "a", NULL, &a);
+    fl_config_region_settings(config, 0, "b", NULL, &b);
+    fl_config_region_settings(config, 1, "c", NULL, &c);
     static const struct {
         int frame;
         double carry, load;
@@ -219,12 +218,12 @@ static void later_words_win_and_a_preset_goes_first(void)
                                       "[region hair]\nmatch = *\nw-temp = 3\nstyle = ./mine\n"
                                       "[region skin]\nmatch = *\nw-uni = 9\npreset = thesis\n");
     const FlSetting settings[] = {{"hair", "w-dir", "5"}, {NULL, "hold", "2"}};
-    const FlGiven given = {settings, 2};
+    g_assert_true(fl_config_give(config, settings, 2, NULL));
 
     g_auto(FlRegionSettings) hair = {0}, skin = {0}, other = {0};
-    g_assert_true(fl_config_region_settings(config, 0, "hair", given, NULL, &hair, NULL));
-    g_assert_true(fl_config_region_settings(config, 1, "skin", given, NULL, &skin, NULL));
-    g_assert_true(fl_config_region_settings(config, -1, "sky", given, NULL, &other, NULL));
+    fl_config_region_settings(config, 0, "hair", NULL, &hair);
+    fl_config_region_settings(config, 1, "skin", NULL, &skin);
+    fl_config_region_settings(config, -1, "sky", NULL, &other);
 
     g_autofree char *mine = g_build_filename(folder, "./mine", NULL);
     g_assert_cmpstr(hair.style, ==, mine);
@@ -242,14 +241,13 @@ static void detail_is_between_preset_and_parameters(void)
 {
     g_autoptr(FlConfig) config = load("[region a]\nfinest-rounds = 5\ndetail = draft\n"
                                       "[region b]\ndetail = finest\npreset = thesis\n");
-    const FlGiven given = {0};
     const FlSetting normal = {NULL, "detail", "normal"};
-    const FlGiven again = {&normal, 1};
     g_auto(FlRegionSettings) a = {0}, b = {0}, c = {0}, preset = {0};
     fl_region_settings_init(&preset);
-    g_assert_true(fl_config_region_settings(config, 0, "a", given, NULL, &a, NULL));
-    g_assert_true(fl_config_region_settings(config, 1, "b", given, NULL, &b, NULL));
-    g_assert_true(fl_config_region_settings(config, 0, "a", again, NULL, &c, NULL));
+    fl_config_region_settings(config, 0, "a", NULL, &a);
+    fl_config_region_settings(config, 1, "b", NULL, &b);
+    g_assert_true(fl_config_give(config, &normal, 1, NULL));
+    fl_config_region_settings(config, 0, "a", NULL, &c);
     g_assert_cmpint(a.detail, ==, FL_DETAIL_DRAFT);
     g_assert_cmpint(a.params.finest_rounds, ==, 5);
     g_assert_true(a.params.half_size && !b.params.half_size);
@@ -264,11 +262,10 @@ static void an_engine_brings_weights_of_its_own(void)
                                       "[region a]\nw-bound = 4\nengine = lazyfluids\n"
                                       "[region b]\nengine = lazyfluids\npreset = lazyfluids\n"
                                       "[region c]\nengine = transport\n");
-    const FlGiven given = {0};
     g_auto(FlRegionSettings) a = {0}, b = {0}, c = {0};
-    g_assert_true(fl_config_region_settings(config, 0, "a", given, NULL, &a, NULL));
-    g_assert_true(fl_config_region_settings(config, 1, "b", given, NULL, &b, NULL));
-    g_assert_true(fl_config_region_settings(config, 2, "c", given, NULL, &c, NULL));
+    fl_config_region_settings(config, 0, "a", NULL, &a);
+    fl_config_region_settings(config, 1, "b", NULL, &b);
+    fl_config_region_settings(config, 2, "c", NULL, &c);
     g_assert_cmpfloat(a.params.w_temp, ==, 0.5f);
     g_assert_cmpfloat(a.params.w_bound, ==, 4);
     g_assert_cmpfloat(b.params.w_temp, ==, 0.2f);

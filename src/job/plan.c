@@ -44,10 +44,7 @@ static bool open_drawing(FlPlan *plan, const FlPlan *before, GError **error)
 {
     FlShapes *shapes = &plan->shapes;
     g_auto(FlRegionSettings) general = {0};
-    if (!fl_config_region_settings(plan->config, -1, "",
-                                   (FlGiven){plan->options.settings, plan->options.n_settings},
-                                   NULL, &general, error))
-        return false;
+    fl_config_region_settings(plan->config, -1, "", NULL, &general);
     shapes->hold = general.hold;
     plan->reading = digest_of_reading(&plan->options, plan->config);
     const bool same = before && fl_digest_is_same(plan->reading, before->reading);
@@ -237,7 +234,8 @@ static bool begin(FlPlan *plan, const FlPlan *before, const FlRenderOptions *opt
         plan->cache = fl_store_open(&(FlStoreOptions){options->cache, options->cache_size, memory,
                                                       options->warning, options->data});
     plan->config = same_config ? before->config : fl_config_load(options->config, options, error);
-    if (!plan->config)
+    if (!plan->config ||
+        !fl_config_give(plan->config, options->settings, options->n_settings, error))
         return false;
     fl_config_complete(plan->config, &plan->options);
     choose_written(plan, options);

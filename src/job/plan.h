@@ -110,10 +110,10 @@ bool fl_guard_pictures(const FlDrawing *drawing, const FlConfig *config,
 
 /** The settings of a region: those that its style gives come before all others, those in the names
  * of its layers override those for all regions. matched: as for fl_config_rule(); label:
- * FlRegion.label or NULL. Other arguments and errors as of fl_config_region_settings(). */
+ * FlRegion.label or NULL. Others as of fl_config_region_settings(). FL_ERROR_USAGE about the names
+ * of layers; `settings` then needs no clearing. */
 bool fl_plan_region_settings(const FlConfig *config, int matched, const char *region,
-                             const char *label, FlGiven given, FlRegionSettings *settings,
-                             GError **error);
+                             const char *label, FlRegionSettings *settings, GError **error);
 
 /** Lists the files that the options name, and the earlier frames. */
 void fl_plan_list_inputs(FlPlan *plan);

@@ -11,11 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-static FlGiven given_of(const FlPlan *plan)
-{
-    return (FlGiven){plan->options.settings, plan->options.n_settings};
-}
-
 static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
 {
     g_autoptr(GPtrArray) names = g_ptr_array_new();
@@ -44,10 +39,10 @@ static bool check_region_names(const FlPlan *plan, GError **error)
 {
     const char *only_region = plan->options.only_region;
     g_auto(GStrv) only = g_strsplit(only_region ? only_region : "", ",", -1);
-    const FlGiven given = given_of(plan);
-    const size_t n = given.n + g_strv_length(only);
-    for (size_t i = 0; i < n; i++) {
-        const char *name = i < given.n ? given.setting[i].region : only[i - given.n];
+    const FlOverrides *given = &plan->config->given;
+    const int n = given->n + (int)g_strv_length(only);
+    for (int i = 0; i < n; i++) {
+        const char *name = i < given->n ? given->override[i].region : only[i - given->n];
         if (name && !has_region(plan, name))
             return no_such_region(plan, name, error);
     }
@@ -105,24 +100,17 @@ static bool choose_key(FlPlan *plan, FlRegionPlan *painted, int k, GError **erro
 }
 
 /* True if a setting is for this region alone. */
-static bool is_said(const FlConfig *config, int rule, const char *region, FlGiven given,
-                    const char *key)
+static bool is_said(const FlConfig *config, int rule, const char *region, const char *key)
 {
-    const FlOverrides *own = rule >= 0 ? &config->rules[rule].overrides : NULL;
-    bool said = false;
-    for (int k = 0; own && k < own->n; k++)
-        said = said || strcmp(own->override[k].key, key) == 0;
-    for (size_t k = 0; k < given.n; k++)
-        said = said || (g_strcmp0(given.setting[k].region, region) == 0 &&
-                        strcmp(given.setting[k].name, key) == 0);
-    return said;
+    return (rule >= 0 && fl_overrides_find(&config->rules[rule].overrides, NULL, key)) ||
+           fl_overrides_find(&config->given, region, key);
 }
 
 /* The settings in the names of layers, such as “hat style=gouache”, of which inner ones override
  * outer ones; those that are said for the region alone are left out. label: the layers, with /
  * between; NULL: none. */
 static bool read_label(const FlConfig *config, int rule, const char *region, const char *label,
-                       FlGiven given, FlOverrides *settings, GError **error)
+                       FlOverrides *settings, GError **error)
 {
     g_auto(GStrv) words = g_strsplit_set(label ? label : "", " \t/", -1);
     for (char **word = words; *word; word++) {
@@ -133,13 +121,13 @@ static bool read_label(const FlConfig *config, int rule, const char *region, con
         if (g_str_has_prefix(*word, FL_MAP_OPTION))
             return fl_fail(error, FL_ERROR_USAGE, "layer “%s”: %s names a file; say it in a config",
                            label, *word);
-        if (!fl_option_find(FL_SCOPE_REGION, *word) || is_said(config, rule, region, given, *word))
+        if (!fl_option_find(FL_SCOPE_REGION, *word) || is_said(config, rule, region, *word))
             continue;
         if (strcmp(*word, "merge-with") == 0 || strcmp(*word, "passthrough") == 0)
             return fl_fail(error, FL_ERROR_USAGE,
                            "layer “%s”: %s decides which regions there are; say it in a config",
                            label, *word);
-        if (fl_overrides_add(settings, *word, value, NULL, error))
+        if (fl_overrides_add(settings, NULL, *word, value, NULL, error))
             continue;
         g_prefix_error(error, "layer “%s”: ", label);
         return false;
@@ -148,23 +136,21 @@ static bool read_label(const FlConfig *config, int rule, const char *region, con
 }
 
 bool fl_plan_region_settings(const FlConfig *config, int matched, const char *region,
-                             const char *label, FlGiven given, FlRegionSettings *settings,
-                             GError **error)
+                             const char *label, FlRegionSettings *settings, GError **error)
 {
     const int rule = fl_config_rule(config, matched, region);
     g_auto(FlOverrides) of_label = {0}, of_style = {0};
-    if (!read_label(config, rule, region, label, given, &of_label, error) ||
-        !fl_config_region_settings(config, rule, region, given, NULL, settings, error))
+    if (!read_label(config, rule, region, label, &of_label, error))
         return false;
-    fl_overrides_apply(&of_label, settings);
+    fl_config_region_settings(config, rule, region, NULL, settings);
+    fl_overrides_apply(&of_label, NULL, settings);
     if (settings->style)
         fl_style_settings(settings->style, &of_style);
     if (of_style.n == 0)
         return true;
     fl_region_settings_clear(settings);
-    if (!fl_config_region_settings(config, rule, region, given, &of_style, settings, error))
-        return false;
-    fl_overrides_apply(&of_label, settings);
+    fl_config_region_settings(config, rule, region, &of_style, settings);
+    fl_overrides_apply(&of_label, NULL, settings);
     return true;
 }
 
@@ -190,8 +176,8 @@ static bool add_styles(FlPlan *plan, int region, GError **error)
             break;
         painted->more = true;
         painted++;
-        if (!fl_plan_region_settings(plan->config, r->rule, r->name, r->label, given_of(plan),
-                                     &painted->settings, error))
+        if (!fl_plan_region_settings(plan->config, r->rule, r->name, r->label, &painted->settings,
+                                     error))
             return false;
         painted->region = region, painted->name = r->name;
         shapes->n_painted++;
@@ -207,8 +193,7 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
     FlRegionPlan *chosen = &shapes->painted[shapes->n_painted];
     FlRegionSettings *settings = &chosen->settings;
     const bool left_out = is_left_out(plan, r->name);
-    if (!fl_plan_region_settings(plan->config, r->rule, r->name, r->label, given_of(plan), settings,
-                                 error))
+    if (!fl_plan_region_settings(plan->config, r->rule, r->name, r->label, settings, error))
         return false;
     const bool painted = r->paintable && settings->passthrough != FL_PASSTHROUGH_YES;
     plan->half &= !painted || settings->params.half_size;

@@ -215,10 +215,9 @@ static bool add_override(const Reader *reader, FlOverrides *overrides, const cha
                          const char *value, GError **error)
 {
     g_auto(FlOverrides) checked = {0};
-    bool overridden = false;
-    for (int k = 0; k < overrides->n; k++)
-        overridden = overridden || strcmp(overrides->override[k].key, key) == 0;
-    return fl_overrides_add(overridden ? &checked : overrides, key, value, reader->folder, error);
+    const bool overridden = fl_overrides_find(overrides, NULL, key);
+    return fl_overrides_add(overridden ? &checked : overrides, NULL, key, value, reader->folder,
+                            error);
 }
 
 static bool set_region(const Reader *reader, const char *key, const char *value, GError **error)
@@ -372,12 +371,11 @@ static void complete_rule(FlRule *rule)
 {
     g_auto(FlRegionSettings) settings = {0};
     fl_region_settings_init(&settings);
-    fl_overrides_apply(&rule->overrides, &settings);
+    fl_overrides_apply(&rule->overrides, NULL, &settings);
     rule->by_name = is_by_name(rule);
     rule->passthrough = settings.passthrough;
-    for (int i = 0; settings.merge_with && i < rule->overrides.n; i++)
-        if (g_str_equal(rule->overrides.override[i].key, "merge-with"))
-            rule->merge_with = rule->overrides.override[i].value;
+    if (settings.merge_with)
+        rule->merge_with = fl_overrides_find(&rule->overrides, NULL, "merge-with")->value;
 }
 
 FlConfig *fl_config_load(const char *path, const FlRenderOptions *caller, GError **error)
@@ -473,6 +471,7 @@ void fl_config_free(FlConfig *config)
         rule_clear(&config->rules[i]);
     g_free(config->rules);
     fl_overrides_clear(&config->defaults);
+    fl_overrides_clear(&config->given);
     g_ptr_array_unref(config->files);
     g_ptr_array_unref(config->strings);
     g_free(config->path);
@@ -501,37 +500,28 @@ void fl_config_complete(const FlConfig *config, FlRenderOptions *options)
     }
 }
 
-/* Settings become overrides, so that a preset among them comes first. */
-static bool apply_settings(FlGiven given, const char *region, FlRegionSettings *settings,
-                           GError **error)
+bool fl_config_give(FlConfig *config, const FlSetting *setting, size_t n, GError **error)
 {
-    g_auto(FlOverrides) overrides = {0};
-    for (size_t i = 0; i < given.n; i++) {
-        const FlSetting *setting = &given.setting[i];
-        if (g_strcmp0(setting->region, region) == 0 &&
-            !fl_overrides_add(&overrides, setting->name, setting->value, NULL, error))
+    fl_overrides_clear(&config->given);
+    for (size_t i = 0; i < n; i++)
+        if (!fl_overrides_add(&config->given, setting[i].region, setting[i].name, setting[i].value,
+                              NULL, error))
             return false;
-    }
-    fl_overrides_apply(&overrides, settings);
     return true;
 }
 
-bool fl_config_region_settings(const FlConfig *config, int rule, const char *region, FlGiven given,
-                               const FlOverrides *first, FlRegionSettings *settings, GError **error)
+void fl_config_region_settings(const FlConfig *config, int rule, const char *region,
+                               const FlOverrides *first, FlRegionSettings *settings)
 {
     g_assert(rule >= -1 && rule < config->n_rules);
     fl_region_settings_init(settings);
     if (first)
-        fl_overrides_apply(first, settings);
-    fl_overrides_apply(&config->defaults, settings);
+        fl_overrides_apply(first, NULL, settings);
+    fl_overrides_apply(&config->defaults, NULL, settings);
     if (rule >= 0)
-        fl_overrides_apply(&config->rules[rule].overrides, settings);
-    if (!apply_settings(given, NULL, settings, error) ||
-        !apply_settings(given, region, settings, error)) {
-        fl_region_settings_clear(settings);
-        return false;
-    }
+        fl_overrides_apply(&config->rules[rule].overrides, NULL, settings);
+    fl_overrides_apply(&config->given, NULL, settings);
+    fl_overrides_apply(&config->given, region, settings);
     if (settings->motion == FL_MOTION_MASKS)
         fl_region_settings_set(settings, "carry", "0", NULL, NULL); // by what outlines show
-    return true;
 }

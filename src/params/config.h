@@ -38,7 +38,8 @@ typedef struct FlConfig {
     FlOverrides defaults;    // of [defaults]
     int n_rules;
     FlRule *rules;
-    GPtrArray *files; // char *: those that were read
+    FlOverrides given; // of the caller, fl_config_give()
+    GPtrArray *files;  // char *: those that were read
     GPtrArray *strings;
 } FlConfig;
 
@@ -67,11 +68,9 @@ void fl_config_free(FlConfig *config); // NULL is fine
  */
 void fl_config_complete(const FlConfig *config, FlRenderOptions *options);
 
-/** The settings of regions that a caller gives, FlRenderOptions.settings. Borrowed. */
-typedef struct FlGiven {
-    const FlSetting *setting;
-    size_t n;
-} FlGiven;
+/** Copies the n settings that a caller gives, FlRenderOptions.settings, in the place of earlier
+ * ones. Returns: false with FL_ERROR_USAGE. */
+bool fl_config_give(FlConfig *config, const FlSetting *setting, size_t n, GError **error);
 
 /**
  * Decides how a region is painted: defaults, then `first`, then [defaults], then the rule, then the
@@ -79,11 +78,9 @@ typedef struct FlGiven {
  *
  * first: what a style says; NULL: nothing.
  * rule is an index into config->rules; -1 without a rule. Initialises `settings`.
- * Returns: false with FL_ERROR_USAGE about a given setting; `settings` then needs no clearing.
  */
-bool fl_config_region_settings(const FlConfig *config, int rule, const char *region, FlGiven given,
-                               const FlOverrides *first, FlRegionSettings *settings,
-                               GError **error);
+void fl_config_region_settings(const FlConfig *config, int rule, const char *region,
+                               const FlOverrides *first, FlRegionSettings *settings);
 
 /** Appends the match keys of a rule as lines. */
 void fl_rule_append_matches(const FlRule *rule, GString *text);
@@ -94,8 +91,9 @@ typedef char *(*FlConfigPath)(const FlOption *option, const char *value, const c
                               void *data, GError **error);
 
 /**
- * Writes a config that paints as `config` does with the options over it, in one file: whatever says
- * how to paint, but for control maps. The options are not completed with the defaults.
+ * Writes a config that paints as `config` does, given settings included, with the options over it,
+ * in one file: whatever says how to paint, but for control maps. The options are not completed with
+ * the defaults.
  * Returns: to be freed; NULL with an error of `path` or FL_ERROR_USAGE.
  */
 char *fl_config_text(const FlConfig *config, const FlRenderOptions *options, FlConfigPath path,

@@ -260,8 +260,8 @@ void fl_region_settings_clear(FlRegionSettings *settings)
         g_clear_pointer(&settings->map[k], g_free);
 }
 
-bool fl_overrides_add(FlOverrides *overrides, const char *key, const char *value,
-                      const char *folder, GError **error)
+bool fl_overrides_add(FlOverrides *overrides, const char *region, const char *key,
+                      const char *value, const char *folder, GError **error)
 {
     g_auto(FlRegionSettings) trial;
     fl_region_settings_init(&trial);
@@ -269,13 +269,25 @@ bool fl_overrides_add(FlOverrides *overrides, const char *key, const char *value
         return false;
     overrides->override = g_renew(FlOverride, overrides->override, overrides->n + 1);
     overrides->override[overrides->n++] =
-        (FlOverride){g_strdup(key), g_strdup(value), g_strdup(folder)};
+        (FlOverride){g_strdup(region), g_strdup(key), g_strdup(value), g_strdup(folder)};
     return true;
+}
+
+const FlOverride *fl_overrides_find(const FlOverrides *overrides, const char *region,
+                                    const char *key)
+{
+    for (int i = overrides->n; i-- > 0;) {
+        const FlOverride *one = &overrides->override[i];
+        if (strcmp(one->key, key) == 0 && g_strcmp0(one->region, region) == 0)
+            return one;
+    }
+    return NULL;
 }
 
 void fl_overrides_clear(FlOverrides *overrides)
 {
     for (int i = 0; i < overrides->n; i++) {
+        g_free(overrides->override[i].region);
         g_free(overrides->override[i].key);
         g_free(overrides->override[i].value);
         g_free(overrides->override[i].folder);
@@ -296,12 +308,13 @@ static int turn_of(const char *key)
     return turn;
 }
 
-void fl_overrides_apply(const FlOverrides *overrides, FlRegionSettings *settings)
+void fl_overrides_apply(const FlOverrides *overrides, const char *region,
+                        FlRegionSettings *settings)
 {
     for (int turn = 0; turn < N_TURNS; turn++)
-        for (int i = 0; i < overrides->n; i++)
-            if (turn_of(overrides->override[i].key) == turn)
-                fl_region_settings_set(settings, overrides->override[i].key,
-                                       overrides->override[i].value, overrides->override[i].folder,
-                                       NULL);
+        for (int i = 0; i < overrides->n; i++) {
+            const FlOverride *one = &overrides->override[i];
+            if (turn_of(one->key) == turn && g_strcmp0(one->region, region) == 0)
+                fl_region_settings_set(settings, one->key, one->value, one->folder, NULL);
+        }
 }

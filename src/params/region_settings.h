@@ -183,8 +183,9 @@ void fl_region_settings_move(FlRegionSettings *settings, int frame);
 /** All keys that fl_region_settings_set() knows, NULL-terminated; static storage. */
 const char *const *fl_region_settings_keys(void);
 
-/** Overrides of a region: keys and values in the order of the file, already checked. */
+/** Overrides of regions: keys and values in the order of the file, already checked. */
 typedef struct FlOverride {
+    char *region; // the only one that it is for; NULL: all of a section, or of the film
     char *key, *value;
     char *folder; // relative paths start here; NULL: the working directory
 } FlOverride;
@@ -195,14 +196,19 @@ typedef struct FlOverrides {
 } FlOverrides;
 
 /** Adds a copy; the last value of a key wins. Errors as fl_region_settings_set(). */
-bool fl_overrides_add(FlOverrides *overrides, const char *key, const char *value,
-                      const char *folder, GError **error);
+bool fl_overrides_add(FlOverrides *overrides, const char *region, const char *key,
+                      const char *value, const char *folder, GError **error);
+
+/** Returns: the last one of a key and for `region`, or NULL. */
+const FlOverride *fl_overrides_find(const FlOverrides *overrides, const char *region,
+                                    const char *key);
 
 void fl_overrides_clear(FlOverrides *overrides);
 
-/** Applies them all, a preset first, then the engine and the detail. fl_overrides_add() has checked
- * them. */
-void fl_overrides_apply(const FlOverrides *overrides, FlRegionSettings *settings);
+/** Applies those for `region`, a preset first, then the engine and the detail. fl_overrides_add()
+ * has checked them. */
+void fl_overrides_apply(const FlOverrides *overrides, const char *region,
+                        FlRegionSettings *settings);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlRegionSettings, fl_region_settings_clear)
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlOverrides, fl_overrides_clear)

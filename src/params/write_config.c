@@ -43,57 +43,49 @@ static bool put_project(const Writer *writer, const FlRenderOptions *options, GE
     return true;
 }
 
-static bool is_given(FlGiven given, const char *key, const char *region)
-{
-    bool is = false;
-    for (size_t k = 0; k < given.n; k++)
-        is = is || (strcmp(given.setting[k].name, key) == 0 &&
-                    g_strcmp0(given.setting[k].region, region) == 0);
-    return is;
-}
-
-/* The last value of each key, unless the caller has given another. Maps are those of one film. */
-static bool put_overrides(const Writer *writer, const FlOverrides *overrides, FlGiven given,
-                          GError **error)
+/* The last value of each key for `region`, unless `over` has another for all regions or for that
+ * of the section. Maps are those of one film. */
+static bool put_overrides(const Writer *writer, const FlOverrides *overrides, const char *region,
+                          const FlOverrides *over, const char *section, GError **error)
 {
     for (int k = 0; k < overrides->n; k++) {
         const FlOverride *own = &overrides->override[k];
         const FlOption *option = fl_option_find(FL_SCOPE_REGION, own->key);
-        bool later = is_given(given, own->key, NULL);
-        for (int j = k + 1; j < overrides->n; j++)
-            later = later || strcmp(overrides->override[j].key, own->key) == 0;
-        if (!later && !(option && option->type == FL_OPTION_MAP) &&
+        if (own == fl_overrides_find(overrides, region, own->key) &&
+            !(over && fl_overrides_find(over, NULL, own->key)) &&
+            !(over && section && fl_overrides_find(over, section, own->key)) &&
+            !(option && option->type == FL_OPTION_MAP) &&
             !put(writer, option, own->key, own->value, own->folder, error))
             return false;
     }
     return true;
 }
 
-static bool put_given(const Writer *writer, FlGiven given, const char *region, GError **error)
+/* A section: its overrides, and what was given for its region. */
+static bool put_section(const Writer *writer, const FlConfig *config, const FlRule *rule,
+                        const char *region, GError **error)
 {
-    g_auto(FlOverrides) overrides = {0};
-    for (size_t k = 0; k < given.n; k++)
-        if (g_strcmp0(given.setting[k].region, region) == 0 &&
-            !fl_overrides_add(&overrides, given.setting[k].name, given.setting[k].value, NULL,
-                              error))
-            return false;
-    return put_overrides(writer, &overrides, (FlGiven){0}, error);
+    const FlOverrides *own = !region ? &config->defaults : rule ? &rule->overrides : NULL;
+    if (region)
+        g_string_append_printf(writer->text, "\n[region %s]\n", region);
+    else
+        g_string_append(writer->text, "\n[defaults]\n");
+    if (rule)
+        fl_rule_append_matches(rule, writer->text);
+    return (!own || put_overrides(writer, own, NULL, &config->given, region, error)) &&
+           put_overrides(writer, &config->given, region, NULL, NULL, error);
 }
 
 /* Sections for regions that the caller has given settings alone. */
-static bool put_regions(const Writer *writer, const FlConfig *config, FlGiven given, GError **error)
+static bool put_regions(const Writer *writer, const FlConfig *config, GError **error)
 {
-    for (size_t k = 0; k < given.n; k++) {
-        const char *region = given.setting[k].region;
-        bool known = !region;
-        for (size_t j = 0; j < k; j++)
-            known = known || g_strcmp0(given.setting[j].region, region) == 0;
-        for (int i = 0; i < config->n_rules; i++)
-            known = known || g_strcmp0(config->rules[i].name, region) == 0;
-        if (known)
-            continue;
-        g_string_append_printf(writer->text, "\n[region %s]\n", region);
-        if (!put_given(writer, given, region, error))
+    g_autoptr(GHashTable) known = g_hash_table_new(g_str_hash, g_str_equal);
+    for (int i = 0; i < config->n_rules; i++)
+        g_hash_table_add(known, (gpointer)config->rules[i].name);
+    for (int k = 0; k < config->given.n; k++) {
+        char *region = config->given.override[k].region;
+        if (region && g_hash_table_add(known, region) &&
+            !put_section(writer, config, NULL, region, error))
             return false;
     }
     return true;
@@ -102,22 +94,11 @@ static bool put_regions(const Writer *writer, const FlConfig *config, FlGiven gi
 char *fl_config_text(const FlConfig *config, const FlRenderOptions *options, FlConfigPath path,
                      void *data, GError **error)
 {
-    const FlGiven given = {options->settings, options->n_settings};
     g_autoptr(GString) text = g_string_new(NULL);
     const Writer writer = {text, path, data};
-    if (!put_project(&writer, options, error))
-        return NULL;
-    g_string_append(text, "\n[defaults]\n");
-    if (!put_overrides(&writer, &config->defaults, given, error) ||
-        !put_given(&writer, given, NULL, error))
-        return NULL;
-    for (int i = 0; i < config->n_rules; i++) {
-        const FlRule *rule = &config->rules[i];
-        g_string_append_printf(text, "\n[region %s]\n", rule->name);
-        fl_rule_append_matches(rule, text);
-        if (!put_overrides(&writer, &rule->overrides, given, error) ||
-            !put_given(&writer, given, rule->name, error))
-            return NULL;
-    }
-    return put_regions(&writer, config, given, error) ? g_strdup(text->str) : NULL;
+    bool good =
+        put_project(&writer, options, error) && put_section(&writer, config, NULL, NULL, error);
+    for (int i = 0; i < config->n_rules && good; i++)
+        good = put_section(&writer, config, &config->rules[i], config->rules[i].name, error);
+    return good && put_regions(&writer, config, error) ? g_strdup(text->str) : NULL;
 }

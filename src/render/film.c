@@ -103,20 +103,12 @@ static bool set_of_film(FlFilm *film, const FlOption *option, const char *value,
     return false;
 }
 
-/* Checks a setting alone; regions are checked once they are known. */
-static bool check_setting(const FlSetting *setting, GError **error)
-{
-    const FlGiven given = {setting, 1};
-    g_auto(FlRegionSettings) settings = {0};
-    g_autoptr(FlConfig) none = fl_config_load(NULL, NULL, error);
-    return none && fl_config_region_settings(none, -1, setting->region ? setting->region : "",
-                                             given, NULL, &settings, error);
-}
-
 /* The setting takes the place of an earlier one of the same name. */
 static bool set_of_regions(FlFilm *film, const FlSetting *setting, GError **error)
 {
-    if (setting->value && !check_setting(setting, error))
+    g_auto(FlOverrides) checked = {0}; // regions are checked once they are known
+    if (setting->value &&
+        !fl_overrides_add(&checked, NULL, setting->name, setting->value, NULL, error))
         return false;
     for (guint k = film->settings->len; k-- > 0;) {
         const FlSetting *old = &g_array_index(film->settings, FlSetting, k);

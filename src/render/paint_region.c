@@ -100,12 +100,11 @@ static bool flow_of(void *data, const FlRegionPlan *plan, int frame, float unkno
 static bool configure(GivenRegion *given, GError **error)
 {
     const FlRegionPaint *region = given->region;
-    const FlGiven settings = {region->settings, region->n_settings};
     FlRegionPlan *plan = &given->plan;
     g_autoptr(FlConfig) none = fl_config_load(NULL, NULL, error);
     plan->name = region->name ? region->name : "region";
-    if (!none ||
-        !fl_plan_region_settings(none, -1, plan->name, NULL, settings, &plan->settings, error))
+    if (!none || !fl_config_give(none, region->settings, region->n_settings, error) ||
+        !fl_plan_region_settings(none, -1, plan->name, NULL, &plan->settings, error))
         return false;
     given->configured = true;
     for (int k = 0; k < FL_MAPS; k++)

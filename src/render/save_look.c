@@ -209,7 +209,7 @@ bool fl_save_look(const FlRenderOptions *given, const char *path, GError **error
     if (!overwrite && !fl_check_not_exists(path, error))
         return false;
     g_autoptr(FlConfig) config = fl_config_load(options.config, &options, error);
-    if (!config)
+    if (!config || !fl_config_give(config, options.settings, options.n_settings, error))
         return false;
     packing.names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
     GError *problem = NULL;

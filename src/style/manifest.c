@@ -55,7 +55,7 @@ static bool take_setting(void *settings, const char *name, const char *value, GE
     g_autoptr(GError) reason = NULL;
     if (g_strv_contains(others, name) || g_str_has_prefix(name, FL_MAP_OPTION)) // files of a film
         return fl_fail(error, FL_ERROR_STYLE, "%s: a style does not say that of its regions", name);
-    return fl_overrides_add(settings, name, value, NULL, &reason) ||
+    return fl_overrides_add(settings, NULL, name, value, NULL, &reason) ||
            fl_fail(error, FL_ERROR_STYLE, "%s", reason->message);
 }
 

@@ -95,7 +95,7 @@ GBytes *fl_wet_save(const FlWet *wet, GError **error)
                  sizeof(FlWetCell));
     list_parts(&state, wet);
     return fl_pack(state.sheet, state.bytes, &g_array_index(state.parts, FlSpan, 0),
-                               (int)state.parts->len, error);
+                   (int)state.parts->len, error);
 }
 
 static bool lies_in(FlRect rect, FlRect page)
