@@ -231,21 +231,21 @@ bool fl_carried_ink_frame(FlCarriedInk *ink, const FlGuides *guides, uint8_t *rg
 /* ---- the state ---------------------------------------------------------------------------------
  */
 
-/* The bytes start with this; the shifts of the old layer and the motion follow, and if there are
- * two layers, the shifts of the fresh one and the shares. */
+/* The bytes start with this; the shifts of the old layer follow, and if there are two layers, the
+ * shifts of the fresh one and the shares. */
 typedef struct Header {
     int32_t planes, x, y, width, height;
 } Header;
 
 static_assert(sizeof(Header) == 20, "the header has no padding");
 
-#define MOST_PLANES 4
+#define MOST_PLANES 3
 
 /* The planes of the state, in the order of the bytes. Returns: their number. */
 static int kept_planes(FlMaterialLayers *layers, bool two, FlMaterial *kept[MOST_PLANES])
 {
     int n = 0;
-    kept[n++] = &layers->old, kept[n++] = &layers->motion;
+    kept[n++] = &layers->old;
     if (two)
         kept[n++] = &layers->fresh, kept[n++] = &layers->share;
     return n;
@@ -289,7 +289,7 @@ static bool load_planes(FlCarriedInk *ink, const Header *h, const uint8_t *bytes
     const FlRect rect = {h->x, h->y, h->width, h->height};
     const size_t plane = 2 * fl_rect_pixels(rect) * sizeof(float);
     FlMaterial *kept[MOST_PLANES];
-    kept_planes(&ink->layers, h->planes > 2, kept);
+    kept_planes(&ink->layers, h->planes > 1, kept);
     for (int k = 0; k < h->planes; k++)
         if (!load_plane(kept[k], rect, bytes + (size_t)k * plane,
                         kept[k] == &ink->layers.share ? 1 : 1e7f, error))
@@ -308,7 +308,7 @@ bool fl_carried_ink_load(FlCarriedInk *ink, GBytes *state, GError **error)
     const bool fits = h.x >= 0 && h.y >= 0 && h.width >= 0 && h.height >= 0 &&
                       h.width <= ink->input.width && h.height <= ink->input.height &&
                       h.x <= ink->input.width - h.width && h.y <= ink->input.height - h.height;
-    if (!fits || (h.planes != 2 && h.planes != MOST_PLANES)) // two more are of a second layer
+    if (!fits || (h.planes != 1 && h.planes != MOST_PLANES)) // two more are of a second layer
         return fl_state_bytes_damaged("its material lies outside the frame", error);
     const size_t plane = 2 * fl_rect_pixels((FlRect){h.x, h.y, h.width, h.height}) * sizeof(float);
     if (size != sizeof h + (size_t)h.planes * plane)

@@ -1,5 +1,5 @@
 /* Carries a material to the next frame, and continues it to places that are new. */
-#include "transport/revealed.h"
+#include "transport/material.h"
 
 #include "base/alloc.h"
 #include <math.h>
@@ -101,10 +101,9 @@ static bool continue_shifts(Level *level, GError **error)
 }
 
 /* `less` of the motion is subtracted from what is carried. */
-static bool carry(const FlMaterial *before, const FlGuides *guides, const FlRevealed *revealed,
-                  float less, FlMaterial *now, GError **error)
+static bool carry(const FlMaterial *before, const FlGuides *guides, FlRect rect, float less,
+                  FlMaterial *now, GError **error)
 {
-    const FlRect rect = revealed->motion.rect;
     Level level[MOST_LEVELS] = {{0}};
     *now = (FlMaterial){0};
     if (!before->shift)
@@ -121,7 +120,6 @@ static bool carry(const FlMaterial *before, const FlGuides *guides, const FlReve
             shift[0] -= less * motion[0], shift[1] -= less * motion[1];
             level[0].weight[q] = 1;
         }
-    good = good && fl_revealed_fill(revealed, guides, level[0].sum, error);
     if ((good = good && continue_shifts(level, error))) {
         now->rect = rect;
         now->shift = g_steal_pointer(&level[0].sum);
@@ -130,14 +128,14 @@ static bool carry(const FlMaterial *before, const FlGuides *guides, const FlReve
     return good;
 }
 
-bool fl_material_advance(const FlMaterial *before, const FlGuides *guides,
-                         const FlRevealed *revealed, FlMaterial *now, GError **error)
+bool fl_material_advance(const FlMaterial *before, const FlGuides *guides, FlRect rect,
+                         FlMaterial *now, GError **error)
 {
-    return carry(before, guides, revealed, 1, now, error);
+    return carry(before, guides, rect, 1, now, error);
 }
 
-bool fl_material_carry(const FlMaterial *before, const FlGuides *guides, const FlRevealed *revealed,
+bool fl_material_carry(const FlMaterial *before, const FlGuides *guides, FlRect rect,
                        FlMaterial *now, GError **error)
 {
-    return carry(before, guides, revealed, 0, now, error);
+    return carry(before, guides, rect, 0, now, error);
 }

@@ -14,22 +14,20 @@ typedef struct FlMaterial {
     float *shift; // interleaved, 2 * rect.width * rect.height px; owned
 } FlMaterial;
 
-typedef struct FlRevealed FlRevealed; // transport/revealed.h
-
 /** The motion that brought the content of a pixel into the frame, px; motion may be NULL. Returns:
  * true if it is known; else the motion is 0. */
 bool fl_material_motion(const FlGuides *guides, int x, int y, float motion[2]);
 
 /**
  * The material of the next frame in `rect`: carried by the drawing's motion where that is known,
- * else by the flow of its outlines, and continued from its surroundings where something appears or
- * is revealed, which has the same rectangle. `guides` are of whole frames. FL_ERROR_NO_MEMORY.
+ * else by the flow of its outlines, and continued from its surroundings where something appears.
+ * `guides` are of whole frames. FL_ERROR_NO_MEMORY.
  */
-bool fl_material_advance(const FlMaterial *before, const FlGuides *guides,
-                         const FlRevealed *revealed, FlMaterial *now, GError **error);
+bool fl_material_advance(const FlMaterial *before, const FlGuides *guides, FlRect rect,
+                         FlMaterial *now, GError **error);
 
 /** The same of pairs of numbers in place of shifts, which stay as they are. */
-bool fl_material_carry(const FlMaterial *before, const FlGuides *guides, const FlRevealed *revealed,
+bool fl_material_carry(const FlMaterial *before, const FlGuides *guides, FlRect rect,
                        FlMaterial *now, GError **error);
 
 /**

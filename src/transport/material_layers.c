@@ -2,7 +2,6 @@
 
 #include "base/alloc.h"
 #include "base/curves.h"
-#include "transport/revealed.h"
 #include <math.h>
 
 #define FADE 0.1f    // per frame; a fully strained layer is gone after six
@@ -15,7 +14,6 @@ void fl_material_layers_clear(FlMaterialLayers *layers)
     fl_material_clear(&layers->old);
     fl_material_clear(&layers->fresh);
     fl_material_clear(&layers->share);
-    fl_material_clear(&layers->motion);
 }
 
 void fl_material_layers_weights(const FlMaterialLayers *layers, size_t p, float *old, float *fresh)
@@ -25,14 +23,13 @@ void fl_material_layers_weights(const FlMaterialLayers *layers, size_t p, float 
     *old = (1 - s) / length, *fresh = s / length;
 }
 
-typedef bool Advance(const FlMaterial *, const FlGuides *, const FlRevealed *, FlMaterial *,
-                     GError **);
+typedef bool Advance(const FlMaterial *, const FlGuides *, FlRect, FlMaterial *, GError **);
 
-static bool advance(Advance *carry, FlMaterial *material, const FlGuides *guides,
-                    const FlRevealed *revealed, GError **error)
+static bool advance(Advance *carry, FlMaterial *material, const FlGuides *guides, FlRect rect,
+                    GError **error)
 {
     FlMaterial now;
-    if (!carry(material, guides, revealed, &now, error))
+    if (!carry(material, guides, rect, &now, error))
         return false;
     fl_material_clear(material);
     *material = now;
@@ -118,16 +115,10 @@ static bool add_layer(FlMaterialLayers *layers, const FlGuides *guides, GError *
 static bool advance_all(FlMaterialLayers *layers, const FlGuides *guides, FlRect rect,
                         GError **error)
 {
-    g_auto(FlRevealed) revealed = {0};
     const bool two = layers->share.shift;
-    if (!fl_revealed_find(&layers->motion, guides, rect, &revealed, error) ||
-        !advance(fl_material_advance, &layers->old, guides, &revealed, error) ||
-        (two && !(advance(fl_material_advance, &layers->fresh, guides, &revealed, error) &&
-                  advance(fl_material_carry, &layers->share, guides, &revealed, error))))
-        return false;
-    fl_material_clear(&layers->motion);
-    layers->motion = revealed.motion, revealed.motion = (FlMaterial){0};
-    return true;
+    return advance(fl_material_advance, &layers->old, guides, rect, error) &&
+           (!two || (advance(fl_material_advance, &layers->fresh, guides, rect, error) &&
+                     advance(fl_material_carry, &layers->share, guides, rect, error)));
 }
 
 bool fl_material_layers_advance(FlMaterialLayers *layers, const FlGuides *guides, FlRect rect,

@@ -7,8 +7,7 @@
 /** All have the same rectangle. Without a share everything is the old layer. */
 typedef struct FlMaterialLayers {
     FlMaterial old, fresh;
-    FlMaterial share;  // in place of shifts: visible share of each layer, 0..1; their sum is 1
-    FlMaterial motion; // in place of shifts: motion of the content into the frame, px
+    FlMaterial share; // in place of shifts: visible share of each layer, 0..1; their sum is 1
 } FlMaterialLayers;
 
 /**
