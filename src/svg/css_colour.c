@@ -3,6 +3,7 @@
 #include "svg/css_value.h"
 #include "svg/transform.h"
 #include <math.h>
+#include <pango/pango.h>
 #include <string.h>
 
 #define MOST_NESTED 8 // color-mix() in color-mix()
@@ -431,19 +432,26 @@ static bool from_hex(const char *text, Rgba *colour)
     return true;
 }
 
+/** Reads a name, also of a colour that the system has in a light scheme. */
 static bool from_name(const char *text, Rgba *colour)
 {
     static const struct {
         const char *name, *hex;
-    } known[] = {
-#define NAMED(name, hex) {#name, hex},
-#include "svg/css_colour_names.def"
-#undef NAMED
-    };
-    for (size_t i = 0; i < G_N_ELEMENTS(known); i++)
-        if (g_ascii_strcasecmp(text, known[i].name) == 0)
-            return from_hex(known[i].hex, colour);
-    return false;
+    } of_system[] = {
+        {"canvas", "ffffff"},       {"canvastext", "000000"},       {"linktext", "0000ee"},
+        {"visitedtext", "551a8b"},  {"activetext", "ff0000"},       {"buttonface", "f0f0f0"},
+        {"buttontext", "000000"},   {"buttonborder", "000000"},     {"field", "ffffff"},
+        {"fieldtext", "000000"},    {"highlight", "b5d5ff"},        {"highlighttext", "000000"},
+        {"selecteditem", "0078d7"}, {"selecteditemtext", "ffffff"}, {"mark", "ffff00"},
+        {"marktext", "000000"},     {"graytext", "808080"}};
+    PangoColor named;
+    for (size_t i = 0; i < G_N_ELEMENTS(of_system); i++)
+        if (g_ascii_strcasecmp(text, of_system[i].name) == 0)
+            return from_hex(of_system[i].hex, colour);
+    if (text[fl_css_identifier(text)] || !pango_color_parse(&named, text))
+        return false;
+    *colour = (Rgba){{named.red / 65535.0, named.green / 65535.0, named.blue / 65535.0}, 1};
+    return true;
 }
 
 static bool read_colour(const char *text, Rgba *colour, int depth)

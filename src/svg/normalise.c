@@ -275,18 +275,3 @@ bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *pa
     Work work = {whole, path, number, warnings, ids, 0};
     return normalise(&work, xmlDocGetRootElement(doc), NULL, error);
 }
-
-static bool is_rewritten(const xmlNode *node)
-{
-    if (fl_is(node, "use") || fl_is(node, "switch"))
-        return true;
-    for (const xmlNode *child = node->children; child; child = child->next)
-        if (child->type == XML_ELEMENT_NODE && !fl_is_undrawn(child) && is_rewritten(child))
-            return true;
-    return false;
-}
-
-bool fl_document_is_rewritten(const xmlDoc *doc)
-{
-    return is_rewritten(xmlDocGetRootElement(doc));
-}

@@ -35,9 +35,6 @@ bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *pa
  */
 int fl_use_show(xmlNode *use, xmlNode *shown);
 
-/** Returns: true if fl_document_normalise() has work: the document draws a <use> or <switch>. */
-bool fl_document_is_rewritten(const xmlDoc *doc);
-
 /** Returns: true if a <switch> may show this child. */
 bool fl_is_eligible(const xmlNode *node);
 

@@ -19,10 +19,7 @@ struct FlSvg {
     char *path;
     double dpi;
     xmlDoc *doc;
-    char *original; // the text before it was normalised; NULL: the handle draws the same
-    size_t original_bytes;
     RsvgHandle *handle; // of the normalised document
-    RsvgHandle *before; // of the original, made when first needed
     GHashTable *ids;    // of the document; made when it is first read, as are the next two
     GHashTable *others; // real path of another file -> its elements, in svg_paint.c
     FlInheritance inheritance;

@@ -32,11 +32,7 @@ static bool draw_leaf(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, 
 
 bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, FlPageSize page, GError **error)
 {
-    if (!svg->original)
-        return render(svg, svg->handle, id, cr, page, error);
-    if (!svg->before)
-        svg->before = fl_svg_make_handle(svg, svg->original, svg->original_bytes, error);
-    return svg->before && render(svg, svg->before, id, cr, page, error);
+    return render(svg, svg->handle, id, cr, page, error);
 }
 
 /** The number of pixels of a page's side that fit on a target of `most` pixels. */

@@ -68,8 +68,6 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
         return NULL;
     fl_fonts_add(svg->doc, svg->files);
     svg->n_nameless = fl_document_name_groups(svg->doc);
-    if (fl_document_is_rewritten(svg->doc))
-        svg->original = fl_document_text(svg->doc, &svg->original_bytes);
     if (!fl_document_normalise(svg->doc, options->whole, path, number, warnings, error))
         return NULL;
     svg->leaves = fl_leaves_new(svg->doc, options->whole);
@@ -96,7 +94,6 @@ void fl_svg_free(FlSvg *svg)
     if (!svg)
         return;
     g_clear_object(&svg->handle);
-    g_clear_object(&svg->before);
     g_clear_pointer(&svg->variants, g_hash_table_unref);
     fl_svg_drop_covers(svg);
     g_free(svg->cover);
@@ -107,7 +104,6 @@ void fl_svg_free(FlSvg *svg)
     g_clear_pointer(&svg->files, g_ptr_array_unref);
     if (svg->doc)
         xmlFreeDoc(svg->doc);
-    g_free(svg->original);
     g_free(svg->path);
     g_free(svg);
 }

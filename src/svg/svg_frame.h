@@ -80,7 +80,7 @@ bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, FlPag
  */
 RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, FlPageSize page);
 
-/** Draws a group of that id (NULL: everything) as it was before the file was normalised. */
+/** Draws a group of that id (NULL: everything) as one. */
 bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, FlPageSize page, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSvg, fl_svg_free)
