@@ -6,59 +6,6 @@
 
 #define MOST_ARGUMENTS 16
 
-/** A function as it is read: its name, and arguments in px, degrees or plain numbers. */
-typedef struct Call {
-    const char *name;
-    size_t length;
-    double v[MOST_ARGUMENTS];
-    int n;
-} Call;
-
-/** The factor of a unit; 0 if it is unknown. */
-static double unit_of(const char *s, size_t n)
-{
-    static const struct {
-        const char *name;
-        double factor;
-    } units[] = {{"", 1}, {"px", 1}, {"deg", 1}, {"rad", 180 / G_PI}, {"grad", 0.9}, {"turn", 360}};
-    for (size_t k = 0; k < G_N_ELEMENTS(units); k++)
-        if (strlen(units[k].name) == n && g_ascii_strncasecmp(s, units[k].name, n) == 0)
-            return units[k].factor;
-    return 0;
-}
-
-/** Skips one function. Returns: NULL if no function begins here. */
-static const char *read_call(const char *s, Call *call)
-{
-    *call = (Call){.name = s};
-    while (g_ascii_isalnum(*s))
-        s++;
-    call->length = (size_t)(s - call->name);
-    s += strspn(s, " \t\r\n\f");
-    if (call->length == 0 || *s != '(')
-        return NULL;
-    s += 1 + strspn(s + 1, " \t\r\n\f");
-    while (*s && *s != ')') {
-        double v;
-        if (call->n == MOST_ARGUMENTS || !fl_number_read(&s, &v))
-            return NULL;
-        const char *end = s;
-        while (g_ascii_isalpha(*s) || *s == '%')
-            s++;
-        const double unit = unit_of(end, (size_t)(s - end));
-        if (unit <= 0 || !isfinite(v * unit))
-            return NULL;
-        call->v[call->n++] = v * unit;
-        s += strspn(s, " \t\r\n\f,");
-    }
-    return *s ? s + 1 : NULL;
-}
-
-static bool is_called(const Call *call, const char *name)
-{
-    return strlen(name) == call->length && g_ascii_strncasecmp(name, call->name, call->length) == 0;
-}
-
 static double tangent(double degrees)
 {
     double s, c;
@@ -73,61 +20,43 @@ static FlAffine rotation_about(double degrees, double x, double y)
     return fl_affine_multiply(&on, &back);
 }
 
-/** The matrix of a function; false if it is unknown or has a wrong number of arguments. */
-static bool map_of(const Call *call, FlAffine *m)
+/** The matrix of a function in the plane; false if it is unknown or has a wrong number of
+ * arguments.
+ */
+static bool map_of(const char *name, const double *v, int n, FlAffine *m)
 {
-    const double *v = call->v;
-    const int n = call->n;
-    if (is_called(call, "matrix") && n == 6)
+#define IS(word, count) (g_ascii_strcasecmp(name, word) == 0 && (count))
+    if (IS("matrix", n == 6))
         *m = (FlAffine){v[0], v[1], v[2], v[3], v[4], v[5]};
-    else if (is_called(call, "translate") && (n == 1 || n == 2))
+    else if (IS("translate", n == 1 || n == 2))
         *m = (FlAffine){1, 0, 0, 1, v[0], n > 1 ? v[1] : 0};
-    else if (is_called(call, "translateX") && n == 1)
+    else if (IS("translateX", n == 1))
         *m = (FlAffine){1, 0, 0, 1, v[0], 0};
-    else if (is_called(call, "translateY") && n == 1)
+    else if (IS("translateY", n == 1))
         *m = (FlAffine){1, 0, 0, 1, 0, v[0]};
-    else if (is_called(call, "scale") && (n == 1 || n == 2))
+    else if (IS("scale", n == 1 || n == 2))
         *m = (FlAffine){v[0], 0, 0, n > 1 ? v[1] : v[0], 0, 0};
-    else if (is_called(call, "scaleX") && n == 1)
+    else if (IS("scaleX", n == 1))
         *m = (FlAffine){v[0], 0, 0, 1, 0, 0};
-    else if (is_called(call, "scaleY") && n == 1)
+    else if (IS("scaleY", n == 1))
         *m = (FlAffine){1, 0, 0, v[0], 0, 0};
-    else if (is_called(call, "rotate") && n == 1)
+    else if (IS("rotate", n == 1))
         *m = fl_affine_rotation(v[0]);
-    else if (is_called(call, "rotate") && n == 3)
+    else if (IS("rotate", n == 3))
         *m = rotation_about(v[0], v[1], v[2]);
-    else if (is_called(call, "skewX") && n == 1)
+    else if (IS("skewX", n == 1))
         *m = (FlAffine){1, 0, tangent(v[0]), 1, 0, 0};
-    else if (is_called(call, "skewY") && n == 1)
+    else if (IS("skewY", n == 1))
         *m = (FlAffine){1, tangent(v[0]), 0, 1, 0, 0};
-    else if (is_called(call, "skew") && (n == 1 || n == 2))
+    else if (IS("skew", n == 1 || n == 2))
         *m = (FlAffine){1, n > 1 ? tangent(v[1]) : 0, tangent(v[0]), 1, 0, 0};
     else
         return false;
     return true;
+#undef IS
 }
 
-bool fl_affine_parse(const char *text, FlAffine *m)
-{
-    FlAffine all = FL_AFFINE_NONE;
-    *m = FL_AFFINE_NONE;
-    const char *s = text + strspn(text, " \t\r\n\f");
-    if (strncmp(s, "none", 4) == 0)
-        return true;
-    while (*s) {
-        Call call;
-        FlAffine one;
-        s = read_call(s, &call);
-        if (!s || !map_of(&call, &one))
-            return false;
-        all = fl_affine_multiply(&all, &one);
-        s += strspn(s, " \t\r\n\f,");
-    }
-    *m = all;
-    return true;
-}
-
-/* ---- CSS ------------------------------------------------------------------------------------- */
+/* ---- in space -------------------------------------------------------------------------------- */
 
 /** A matrix of homogeneous coordinates in space, by rows. */
 typedef struct Space {
@@ -199,31 +128,44 @@ static bool map_of_space(const char *name, const double *v, int n, Space *space)
 #undef IS
 }
 
-/** Reads the arguments of one function and its matrix. */
-static bool map_of_css(const char *name, const char *arguments, const FlCssUnits *units,
-                       Space *space)
+/** Reads the arguments of a function of CSS: their number, -1 if they are wrong. */
+static int read_arguments(const char *name, const char *text, const FlCssUnits *units, double *v)
 {
-    FlAffine plane;
-    g_auto(GStrv) part = fl_css_split(arguments, ',');
-    g_autofree char *lower = g_ascii_strdown(name, -1);
-    const bool vertical = g_str_has_suffix(lower, "y");
-    double v[MOST_ARGUMENTS];
+    g_auto(GStrv) part = fl_css_split(text, ',');
+    const bool length = g_ascii_strncasecmp(name, "translate", 9) == 0;
+    const bool vertical = g_ascii_tolower(name[strlen(name) - 1]) == 'y';
     const int n = (int)g_strv_length(part);
-    if (n > MOST_ARGUMENTS)
-        return false;
-    for (int i = 0; i < n; i++) {
-        const bool length = g_str_has_prefix(lower, "translate");
+    for (int i = 0; i < n && n <= MOST_ARGUMENTS; i++) {
         const double whole = !length ? 1 : i == 1 || vertical ? units->height : units->width;
         if (strcmp(part[i], "none") == 0) // perspective(none)
             v[i] = 0;
         else if (!fl_css_number(part[i], units, whole, &v[i]))
-            return false;
+            return -1;
     }
-    if (map_of_space(lower, v, n, space))
+    return n <= MOST_ARGUMENTS ? n : -1;
+}
+
+/** Likewise those of a function of the attribute, which are plain numbers. */
+static int read_numbers(const char *text, double *v)
+{
+    int n = 0;
+    for (const char *s = fl_css_space(text); *s; s += strspn(s, FL_CSS_SPACE ","))
+        if (n == MOST_ARGUMENTS || !fl_number_read(&s, &v[n++]))
+            return -1;
+    return n;
+}
+
+/** Reads one function and its matrix; units: NULL for those of the attribute. */
+static bool read_function(const char *name, const char *arguments, const FlCssUnits *units,
+                          Space *space)
+{
+    FlAffine plane;
+    double v[MOST_ARGUMENTS];
+    g_autofree char *lower = g_ascii_strdown(name, -1);
+    const int n = units ? read_arguments(name, arguments, units, v) : read_numbers(arguments, v);
+    if (n >= 0 && units && map_of_space(lower, v, n, space))
         return true;
-    Call call = {.name = name, .length = strlen(name), .n = n};
-    memcpy(call.v, v, sizeof v);
-    const bool good = map_of(&call, &plane);
+    const bool good = n >= 0 && map_of(name, v, n, &plane);
     *space = good ? space_of(&plane) : *space;
     return good;
 }
@@ -245,22 +187,27 @@ bool fl_affine_parse_css(const char *text, const FlCssUnits *units, FlAffine *m,
     if (strcmp(s, "none") == 0)
         return true;
     while (*s) {
-        const char *open = s + fl_css_identifier(s);
-        const char *close = *open == '(' ? fl_css_find(open + 1, ")") : open;
+        const char *open = s + fl_css_identifier(s), *inside = fl_css_space(open);
+        const char *close = *inside == '(' ? fl_css_find(inside + 1, ")") : inside;
         g_autofree char *name = g_strndup(s, (gsize)(open - s));
-        if (*open != '(' || *close != ')')
+        if (*inside != '(' || *close != ')' || open == s || (units && inside != open))
             return false;
-        g_autofree char *arguments = g_strndup(open + 1, (gsize)(close - open) - 1);
+        g_autofree char *arguments = g_strndup(inside + 1, (gsize)(close - inside) - 1);
         Space one;
-        if (!map_of_css(name, arguments, units, &one))
+        if (!read_function(name, arguments, units, &one))
             return false;
         all = multiply(&all, &one);
-        s = fl_css_space(close + 1);
+        s = close + 1 + strspn(close + 1, units ? FL_CSS_SPACE : FL_CSS_SPACE ",");
     }
     const bool in_plane = flatten(&all, m);
     if (flat)
         *flat = in_plane;
     return true;
+}
+
+bool fl_affine_parse(const char *text, FlAffine *m)
+{
+    return fl_affine_parse_css(text, NULL, m, NULL);
 }
 
 FlAffine fl_affine_of(const xmlNode *node)

@@ -7,9 +7,8 @@
 #include "svg/document.h"
 
 /**
- * Reads a list of functions, "translate(3 4) rotate(10deg)", of the attribute or of the CSS
- * property, as librsvg does: in the plane, px, round the origin. "none" and "" are the identity.
- * Returns: false if it cannot be parsed; *m is the identity then.
+ * Reads the attribute's list of functions, "translate(3 4) rotate(10)". "none" and "" are the
+ * identity. Returns: false if it cannot be parsed; *m is the identity then.
  */
 bool fl_affine_parse(const char *text, FlAffine *m);
 
