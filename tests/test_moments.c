@@ -176,14 +176,14 @@ static void css_has_its_values(void)
     assert_at(CSS("@keyframes k{to{fill:#ffffff}}#a{fill:#000000;animation:k 1s linear}"), .5,
               "fill", "rgb(128, 128, 128)");
     assert_at(CSS("@keyframes k{to{transform:rotate(90deg)}}#a{animation:k 1s linear}"), 1 / 3.,
-              "transform", "matrix(0.866025404 0.5 -0.5 0.866025404 0 0)");
+              "transform", "matrix(0.866025404, 0.5, -0.5, 0.866025404, 0, 0)");
     assert_at(CSS("@keyframes k{from{transform:translate(0) scale(1)}to{transform:translate(10px) "
                   "scale(3)}}"
                   "#a{animation:k 1s linear}"),
-              .5, "transform", "matrix(2 0 0 2 5 0)");
+              .5, "transform", "matrix(2, 0, 0, 2, 5, 0)");
     assert_at(CSS("@keyframes k{from{transform:translateX(10px)}to{transform:matrix(1,0,0,1,20,0)}}"
                   "#a{animation:k 1s linear}"),
-              .5, "transform", "matrix(1 0 0 1 15 0)");
+              .5, "transform", "matrix(1, 0, 0, 1, 15, 0)");
     assert_at(CSS("@keyframes k{0%{opacity:0;animation-timing-function:ease}50%{opacity:1}"
                   "100%{opacity:0}}#a{animation:k 2s linear}"),
               1.25, "opacity", "0.75");

@@ -39,35 +39,17 @@ static char *value_or_attribute(const FlCssEffects *effects, const xmlNode *node
 
 static void set_matrix(xmlNode *node, const FlAffine *m)
 {
-    const double v[] = {m->xx, m->yx, m->xy, m->yy, m->x0, m->y0};
-    GString *text = g_string_new("matrix(");
-    for (int i = 0; i < 6; i++) {
-        g_autofree char *number = fl_css_number_text(v[i]);
-        g_string_append_printf(text, "%s%s", i ? " " : "", number);
-    }
-    g_string_append_c(text, ')');
-    fl_set_attribute(node, "transform", text->str);
-    g_string_free(text, TRUE);
+    g_autofree char *text = fl_affine_text(m);
+    fl_set_attribute(node, "transform", text);
 }
 
 /* ---- boxes ----------------------------------------------------------------------------------- */
 
-/** The value of a property, or else that of the elements around; NULL: none is set. To be freed. */
-static char *inherited(const xmlNode *node, const char *name)
-{
-    char *value = NULL;
-    for (; node && node->type == XML_ELEMENT_NODE && !value; node = node->parent) {
-        value = fl_property(node, name);
-        if (value && strcmp(value, "inherit") == 0)
-            g_clear_pointer(&value, g_free);
-    }
-    return value;
-}
-
 /** The width of a stroke that is drawn; 0 without one. */
 static double stroke_width(const xmlNode *node, const FlCssUnits *units)
 {
-    g_autofree char *paint = inherited(node, "stroke"), *text = inherited(node, "stroke-width");
+    g_autofree char *paint = fl_inherited_property(node, "stroke"),
+                    *text = fl_inherited_property(node, "stroke-width");
     double width = 1;
     if (!paint || strcmp(paint, "none") == 0)
         return 0;
@@ -440,7 +422,7 @@ static void scale_stroke(xmlNode *node, const char *const *names, double factor,
                          const FlCssUnits *units)
 {
     for (int i = 0; names[i]; i++) {
-        g_autofree char *value = inherited(node, names[i]);
+        g_autofree char *value = fl_inherited_property(node, names[i]);
         if (!value && strcmp(names[i], "stroke-width") == 0)
             value = g_strdup("1");
         g_autofree char *text =
@@ -471,7 +453,7 @@ static void apply_light(xmlNode *node)
     static const char *const lights[] = {"feDiffuseLighting", "feSpecularLighting", NULL};
     if (!fl_is_one_of(node, lights))
         return;
-    g_autofree char *space = inherited(node, "color-interpolation-filters");
+    g_autofree char *space = fl_inherited_property(node, "color-interpolation-filters");
     g_autofree char *colour = fl_property(node, "lighting-color");
     g_autofree char *linear = colour ? fl_css_colour_in_linear_light(colour) : NULL;
     g_autofree char *declaration = linear ? g_strconcat("lighting-color:", linear, NULL) : NULL;

@@ -11,105 +11,20 @@ static const FlCssProperty known[] = {
 #undef P
 };
 
-/** Properties of pages and programs, which change no still picture of a drawing. */
-static const char *const ignored[] = {
-    "-",
-    "accent-",
-    "align-",
-    "animation-",
-    "appearance",
-    "aspect-",
-    "block-",
-    "border",
-    "bottom",
-    "box-",
-    "break-",
-    "caret-",
-    "color-adjust",
-    "color-rendering",
-    "color-scheme",
-    "column",
-    "contain",
-    "content-visibility",
-    "cursor",
-    "flex",
-    "float",
-    "font-feature-",
-    "font-kerning",
-    "font-optical-",
-    "font-smooth",
-    "font-synthesis",
-    "font-variant-",
-    "font-variation-",
-    "gap",
-    "grid",
-    "hyphens",
-    "inline-size",
-    "inset",
-    "justify-",
-    "kerning",
-    "left",
-    "list-",
-    "margin",
-    "max-",
-    "min-",
-    "object-",
-    "offset-position",
-    "order",
-    "orphans",
-    "outline-",
-    "overscroll-",
-    "padding",
-    "perspective-origin",
-    "place-",
-    "pointer-events",
-    "position",
-    "print-color-adjust",
-    "quotes",
-    "resize",
-    "right",
-    "row-",
-    "scroll",
-    "solid-",
-    "speak",
-    "tab-size",
-    "table-",
-    "text-align",
-    "text-indent",
-    "text-overflow",
-    "text-size-adjust",
-    "text-wrap",
-    "top",
-    "touch-",
-    "transform-style",
-    "transition",
-    "user-select",
-    "vertical-align",
-    "white-space",
-    "widows",
-    "will-change",
-    "word-break",
-    "word-wrap",
-    "z-index",
-    "zoom",
-    "shape-",
-    "text-underline-",
-    "text-decoration-",
-    "text-emphasis",
-    "isolate",
-    "view-transition-",
-    "counter-",
-    "interpolate-",
-    "overflow-",
-    "font-palette",
-    "font-language-",
-    "font-display",
-    "src",
-    "line-break",
-    "hanging-",
-    "ruby-",
-    "math-",
-};
+/** Properties of pages and programs, which change no still picture of a drawing; the rest of a name
+ * may follow. */
+static const char ignored[] =
+    "- accent- align- animation- appearance aspect- block- border bottom box- break- caret- "
+    "color-adjust color-rendering color-scheme column contain content-visibility cursor flex "
+    "float font-feature- font-kerning font-optical- font-smooth font-synthesis font-variant- "
+    "font-variation- gap grid hyphens inline-size inset justify- kerning left list- margin "
+    "max- min- object- offset-position order orphans outline- overscroll- padding "
+    "perspective-origin place- pointer-events position print-color-adjust quotes resize right "
+    "row- scroll solid- speak tab-size table- text-align text-indent text-overflow text-size- "
+    "adjust text-wrap top touch- transform-style transition user-select vertical-align white- "
+    "space widows will-change word-break word-wrap z-index zoom shape- text-underline- text- "
+    "decoration- text-emphasis isolate view-transition- counter- interpolate- overflow- font- "
+    "palette font-language- font-display src line-break hanging- ruby- math-";
 
 static const FlCssProperty harmless = {"", FL_CSS_IGNORED, false, NULL, NULL};
 
@@ -121,9 +36,11 @@ static int compare(const void *name, const void *property)
 const FlCssProperty *fl_css_property(const char *name)
 {
     const FlCssProperty *found = bsearch(name, known, G_N_ELEMENTS(known), sizeof *known, compare);
-    for (size_t i = 0; i < G_N_ELEMENTS(ignored) && !found; i++)
-        if (g_str_has_prefix(name, ignored[i]))
+    for (const char *word = ignored; word && !found; word = strchr(word, ' ')) {
+        word += *word == ' ';
+        if (strncmp(name, word, strcspn(word, " ")) == 0)
             found = &harmless;
+    }
     return found;
 }
 

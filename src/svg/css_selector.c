@@ -452,13 +452,11 @@ static bool matches_nth(const Simple *simple, const xmlNode *node, FlSelectorWor
                              : beyond % simple->step == 0 && beyond / simple->step >= 0;
 }
 
-static bool is_only(const Simple *simple, const xmlNode *node)
+static bool is_only(const Simple *simple, const xmlNode *node, FlSelectorWork *work)
 {
-    for (int back = 0; back < 2; back++)
-        for (const xmlNode *at = next_element(node, back); at; at = next_element(at, back))
-            if (!simple->of_type || xmlStrEqual(at->name, node->name))
-                return false;
-    return true;
+    Simple last = *simple;
+    last.from_end = true;
+    return place_of(simple, node, work) == 1 && place_of(&last, node, work) == 1;
 }
 
 static bool has_word(const char *text, const char *word)
@@ -547,7 +545,7 @@ static bool matches_simple(const Simple *simple, const xmlNode *node, FlSelector
     case SIMPLE_NTH:
         return matches_nth(simple, node, work);
     case SIMPLE_ONLY:
-        return is_only(simple, node);
+        return is_only(simple, node, work);
     case SIMPLE_ROOT:
         return !parent_element(node);
     case SIMPLE_EMPTY:

@@ -100,6 +100,17 @@ char *fl_property(const xmlNode *node, const char *name)
     return own ? g_strstrip(g_strdup(attribute ? (const char *)attribute : "")) : NULL;
 }
 
+char *fl_inherited_property(const xmlNode *node, const char *name)
+{
+    char *value = NULL;
+    for (; node && node->type == XML_ELEMENT_NODE && !value; node = node->parent) {
+        value = fl_property(node, name);
+        if (value && strcmp(value, "inherit") == 0)
+            g_clear_pointer(&value, g_free);
+    }
+    return value;
+}
+
 bool fl_declare(xmlNode *node, const char *declarations)
 {
     g_autoptr(xmlChar) style = fl_attribute(node, "style");

@@ -75,6 +75,9 @@ bool fl_is_animation(const xmlNode *node);
  */
 char *fl_property(const xmlNode *node, const char *name);
 
+/** Likewise, of the innermost element around that says it, if the element itself does not. */
+char *fl_inherited_property(const xmlNode *node, const char *name);
+
 /**
  * Adds declarations, such as "fill:none !important", to those of `style=""`. Returns: false if
  * `style=""` already ended with these declarations.

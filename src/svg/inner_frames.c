@@ -21,21 +21,11 @@ static GPtrArray *inkscape_pages(const xmlDoc *doc)
     return pages;
 }
 
-static xmlNode *find(xmlNode *node, const char *id)
-{
-    g_autoptr(xmlChar) own = fl_attribute(node, "id");
-    if (own && strcmp((const char *)own, id) == 0)
-        return node;
-    xmlNode *found = NULL;
-    for (xmlNode *child = node->children; child && !found; child = child->next)
-        found = child->type == XML_ELEMENT_NODE ? find(child, id) : NULL;
-    return found;
-}
-
 /** The references that an FBF.SVG shows in turn, and its <use>; NULL for other files. */
-static char **fbf_frames(const xmlDoc *doc, xmlNode **use)
+static char **fbf_frames(xmlDoc *doc, xmlNode **use)
 {
-    *use = find(xmlDocGetRootElement(doc), "PROSKENION");
+    g_autoptr(GHashTable) ids = fl_document_ids(doc);
+    *use = g_hash_table_lookup(ids, "PROSKENION");
     for (const xmlNode *child = *use ? (*use)->children : NULL; child; child = child->next) {
         g_autoptr(xmlChar) name =
             fl_is(child, "animate") ? fl_attribute(child, "attributeName") : NULL;
@@ -46,7 +36,7 @@ static char **fbf_frames(const xmlDoc *doc, xmlNode **use)
     return NULL;
 }
 
-static int count_pages(const xmlDoc *doc)
+static int count_pages(xmlDoc *doc)
 {
     xmlNode *use;
     g_auto(GStrv) fbf = fbf_frames(doc, &use);

@@ -296,18 +296,6 @@ static FlAffine put_together(const Parts *p)
     return m;
 }
 
-static char *matrix_text(const FlAffine *m)
-{
-    const double v[] = {m->xx, m->yx, m->xy, m->yy, m->x0, m->y0};
-    GString *text = g_string_new("matrix(");
-    for (int i = 0; i < 6; i++) {
-        g_autofree char *number = fl_css_number_text(v[i]);
-        g_string_append_printf(text, "%s%s", i ? ", " : "", number);
-    }
-    g_string_append_c(text, ')');
-    return g_string_free(text, FALSE);
-}
-
 static char *mix_matrices(const char *a, const char *b, double p, const FlCssUnits *units)
 {
     FlAffine ma, mb;
@@ -322,7 +310,7 @@ static char *mix_matrices(const char *a, const char *b, double p, const FlCssUni
                            x.turn + turn * p,        x.sx + (y.sx - x.sx) * p,
                            x.sy + (y.sy - x.sy) * p, x.skew + (y.skew - x.skew) * p};
     const FlAffine m = put_together(&between);
-    return matrix_text(&m);
+    return fl_affine_text(&m);
 }
 
 /** Cuts the function at *s off a list: its name, and the arguments with every part said. */

@@ -5,9 +5,11 @@
 #include "svg/normalise.h"
 #include <string.h>
 
-/** The properties that a leaf inherits from its groups; strings grow inwards and are cut back. */
+/** The lists that a leaf inherits from its groups; they grow inwards and are cut back. */
+enum { LABELS, LAYERS, IDS, GROUPS, CLASSES, TREE, N_LISTS };
+
 typedef struct Walk {
-    GString *labels, *layers, *ids, *groups, *classes, *tree;
+    GString *list[N_LISTS];
     const char *const *whole;
     FlLeaves *leaves;
     GHashTable *by_id; // id -> xmlNode, the first with that id
@@ -15,26 +17,6 @@ typedef struct Walk {
     int mask;          // innermost group around with a mask; -1 without masks
     int n_made;        // ids made
 } Walk;
-
-typedef struct Mark {
-    gsize labels, layers, ids, groups, classes, tree;
-} Mark;
-
-static Mark mark(const Walk *w)
-{
-    return (Mark){w->labels->len, w->layers->len,  w->ids->len,
-                  w->groups->len, w->classes->len, w->tree->len};
-}
-
-static void cut_back(Walk *w, Mark m)
-{
-    g_string_truncate(w->labels, m.labels);
-    g_string_truncate(w->layers, m.layers);
-    g_string_truncate(w->ids, m.ids);
-    g_string_truncate(w->groups, m.groups);
-    g_string_truncate(w->classes, m.classes);
-    g_string_truncate(w->tree, m.tree);
-}
 
 static void append(GString *list, const char *item)
 {
@@ -60,7 +42,7 @@ static void append_group(Walk *w, const xmlNode *node)
 {
     g_autoptr(xmlChar) id = fl_attribute(node, "id");
     if (id && fl_is_container(node) && g_hash_table_lookup(w->by_id, id) == node)
-        append(w->groups, (const char *)id);
+        append(w->list[GROUPS], (const char *)id);
 }
 
 static void enter(Walk *w, const xmlNode *node, int index)
@@ -69,15 +51,15 @@ static void enter(Walk *w, const xmlNode *node, int index)
     g_autoptr(xmlChar) classes = fl_attribute(node, "class");
     bool is_layer = false;
     g_autofree char *label = fl_label_of(node, (const char *)id, &is_layer);
-    append(w->labels, label);
-    if (label && (is_layer || w->layers->len == 0))
-        append(w->layers, label);
-    append(w->ids, (const char *)id);
+    append(w->list[LABELS], label);
+    if (label && (is_layer || w->list[LAYERS]->len == 0))
+        append(w->list[LAYERS], label);
+    append(w->list[IDS], (const char *)id);
     append_group(w, node);
     g_auto(GStrv) words = g_strsplit_set(classes ? (const char *)classes : "", " \t\r\n", -1);
     for (int i = 0; words[i]; i++)
-        append(w->classes, words[i]);
-    g_string_append_printf(w->tree, w->tree->len ? "/%d" : "%d", index);
+        append(w->list[CLASSES], words[i]);
+    g_string_append_printf(w->list[TREE], w->list[TREE]->len ? "/%d" : "%d", index);
 }
 
 /** The node's id if it is the first of that id, else a new one, which goes into the document. */
@@ -143,12 +125,12 @@ static FlLeaf make_leaf(Walk *w, xmlNode *node)
         .layer = g_strdup(masked ? masked : id),
         .mask = w->mask,
         .name = g_strdup(name ? (const char *)name : ""),
-        .labels = g_strdup(w->labels->str),
-        .layers = g_strdup(w->layers->str),
-        .ids = g_strdup(w->ids->str),
-        .groups = g_strdup(w->groups->str),
-        .classes = g_strdup(w->classes->str),
-        .tree = g_strdup(w->tree->str),
+        .labels = g_strdup(w->list[LABELS]->str),
+        .layers = g_strdup(w->list[LAYERS]->str),
+        .ids = g_strdup(w->list[IDS]->str),
+        .groups = g_strdup(w->list[GROUPS]->str),
+        .classes = g_strdup(w->list[CLASSES]->str),
+        .tree = g_strdup(w->list[TREE]->str),
         .unit = w->unit,
         .text = has_text(node),
     };
@@ -248,7 +230,9 @@ static void walk(Walk *w, xmlNode *node)
         index++;
         if (fl_is_undrawn(child) || is_hidden(child))
             continue;
-        const Mark m = mark(w);
+        gsize before[N_LISTS];
+        for (int k = 0; k < N_LISTS; k++)
+            before[k] = w->list[k]->len;
         enter(w, child, index);
         if (is_drawn(child) || fl_is_whole(child, w->whole)) {
             const FlLeaf leaf = make_leaf(w, child);
@@ -258,7 +242,8 @@ static void walk(Walk *w, xmlNode *node)
         } else if (fl_is_container(child)) {
             walk_group(w, child);
         }
-        cut_back(w, m);
+        for (int k = 0; k < N_LISTS; k++)
+            g_string_truncate(w->list[k], before[k]);
     }
 }
 
@@ -303,28 +288,17 @@ FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole)
     g_array_set_clear_func(leaves->leaf, leaf_clear);
     g_array_set_clear_func(leaves->unit, unit_clear);
     g_array_set_clear_func(leaves->mask, mask_clear);
-    Walk w = {.labels = g_string_new(NULL),
-              .layers = g_string_new(NULL),
-              .ids = g_string_new(NULL),
-              .groups = g_string_new(NULL),
-              .whole = whole,
-              .classes = g_string_new(NULL),
-              .tree = g_string_new(NULL),
-              .leaves = leaves,
-              .unit = -1,
-              .mask = -1};
+    Walk w = {.whole = whole, .leaves = leaves, .unit = -1, .mask = -1};
+    for (int k = 0; k < N_LISTS; k++)
+        w.list[k] = g_string_new(NULL);
     w.by_id = fl_document_ids(doc);
     if (whole && g_strv_contains(whole, FL_WHOLE_ALL))
         add_all(&w, xmlDocGetRootElement(doc));
     else
         walk(&w, xmlDocGetRootElement(doc));
     g_hash_table_unref(w.by_id);
-    g_string_free(w.labels, TRUE);
-    g_string_free(w.layers, TRUE);
-    g_string_free(w.ids, TRUE);
-    g_string_free(w.groups, TRUE);
-    g_string_free(w.classes, TRUE);
-    g_string_free(w.tree, TRUE);
+    for (int k = 0; k < N_LISTS; k++)
+        g_string_free(w.list[k], TRUE);
     return leaves;
 }
 

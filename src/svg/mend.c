@@ -20,18 +20,6 @@ static xmlNode *element_beside(xmlNode *node, bool before)
     return node;
 }
 
-/** The value of a property that an element has or inherits, to be freed; NULL without one. */
-static char *inherited_word(const xmlNode *node, const char *name)
-{
-    for (; node && node->type == XML_ELEMENT_NODE; node = node->parent) {
-        char *word = fl_property(node, name);
-        if (word && strcmp(word, "inherit") != 0)
-            return word;
-        g_free(word);
-    }
-    return NULL;
-}
-
 /* ---- drop shadows ---------------------------------------------------------------------------- */
 
 /** The name of a filter step's input, to be freed; names the step before it if that has no name. */
@@ -271,7 +259,7 @@ static void append_dots(GString *d, const FlOutlines *outlines)
 static void mend_caps(xmlNode *path)
 {
     g_autoptr(xmlChar) d = fl_attribute(path, "d");
-    g_autofree char *cap = inherited_word(path, "stroke-linecap");
+    g_autofree char *cap = fl_inherited_property(path, "stroke-linecap");
     const bool square = cap && strcmp(cap, "square") == 0;
     if (!d || (!square && strpbrk((const char *)d, "LlHhVvCcSsQqTtAaZz"))) // as nearly all have
         return;
@@ -305,7 +293,7 @@ static int height_of(const char *word)
 
 static int baseline_of(const xmlNode *node)
 {
-    g_autofree char *word = inherited_word(node, "dominant-baseline");
+    g_autofree char *word = fl_inherited_property(node, "dominant-baseline");
     return word ? height_of(word) : 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "svg/cascade.h"
+#include "svg/css_scan.h"
 #include "svg/inner_frames.h"
 #include "svg/normalise.h"
 #include "svg/passes.h"
@@ -172,29 +173,19 @@ FlOutlines *fl_svg_outlines(FlSvg *svg, FlPageSize page)
     return fl_outlines_new(inheritance, svg->leaves, svg->ids);
 }
 
-/* Reads a number at *text, after `sign` unless that is 0, and moves *text behind the number. */
-static bool read_side(const char **text, char sign, double *value)
-{
-    if (sign && **text != sign)
-        return false;
-    *text += sign != 0;
-    char *end;
-    *value = g_ascii_strtod(*text, &end);
-    const bool read = end != *text && g_ascii_isdigit(**text);
-    *text = end;
-    return read;
-}
-
 bool fl_canvas_parse(const char *text, FlCanvas *canvas, GError **error)
 {
+    static const char before[] = {0, 'x', '+', '+'};
     const char *at = text;
-    *canvas = (FlCanvas){0};
-    const bool size = read_side(&at, 0, &canvas->width) && read_side(&at, 'x', &canvas->height) &&
-                      canvas->width > 0 && canvas->height > 0;
-    const bool corner =
-        size &&
-        (*at == '\0' || (read_side(&at, '+', &canvas->x) && read_side(&at, '+', &canvas->y)));
-    if (corner && *at == '\0')
+    double v[4] = {0};
+    int n = 0;
+    bool read = true;
+    while (n < 4 && read && (n == 0 || *at == before[n])) {
+        at += n > 0;
+        read = fl_number_read(&at, &v[n++]);
+    }
+    *canvas = (FlCanvas){v[2], v[3], v[0], v[1]};
+    if (read && (n == 2 || n == 4) && !*at && v[0] > 0 && v[1] > 0)
         return true;
     return fl_fail(error, FL_ERROR_USAGE, "canvas “%s”: expected WxH or WxH+X+Y, such as %s", text,
                    "1000x800");

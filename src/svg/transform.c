@@ -210,6 +210,17 @@ bool fl_affine_parse(const char *text, FlAffine *m)
     return fl_affine_parse_css(text, NULL, m, NULL);
 }
 
+char *fl_affine_text(const FlAffine *m)
+{
+    const double v[] = {m->xx, m->yx, m->xy, m->yy, m->x0, m->y0};
+    GString *text = g_string_new("matrix(");
+    for (int i = 0; i < 6; i++) {
+        g_autofree char *number = fl_css_number_text(v[i]);
+        g_string_append_printf(text, "%s%s", i ? ", " : "", number);
+    }
+    return g_string_free(g_string_append_c(text, ')'), FALSE);
+}
+
 FlAffine fl_affine_of(const xmlNode *node)
 {
     FlAffine m = FL_AFFINE_NONE;

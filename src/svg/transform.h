@@ -19,6 +19,9 @@ bool fl_affine_parse(const char *text, FlAffine *m);
  */
 bool fl_affine_parse_css(const char *text, const FlCssUnits *units, FlAffine *m, bool *flat);
 
+/** "matrix(…)", which both read; to be freed. */
+char *fl_affine_text(const FlAffine *m);
+
 /** The transform of an element; the identity if librsvg rejects the attribute. */
 FlAffine fl_affine_of(const xmlNode *node);
 
