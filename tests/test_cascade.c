@@ -376,6 +376,7 @@ static void gaps_of_librsvg_are_filled(void)
 {
     assert_value("<polygon id='a' points='0 0 9,0 9 9 5'/>", "points", "0 0 9,0 9 9");
     assert_value("<polygon id='a' points='0 0;9 0;9 9'/>", "points", "0 0");
+    assert_value("<polygon id='a' points=' 0 , 0, 9,  0,9 9 '/>", "points", "0 , 0, 9,  0,9 9");
     assert_value("<filter id='f'/><g transform='rotate(90)'><path id='a' filter='url(#f)'/></g>",
                  "filter", "url(#f)");
     assert_value("<clipPath id='e'/><clipPath id='c' clip-path='url(#e)'/>"
@@ -391,7 +392,7 @@ static void gaps_of_librsvg_are_filled(void)
     assert_value("<path id='a' d='M1 2M3 4' stroke-linecap='round'/>", "stroke-linecap", "butt");
     assert_value("<path id='a' d='M1 2z' stroke-linecap='round'/>", "stroke-linecap", "round");
     assert_value("<g style='stroke-linecap:square'><path id='a' d='M1 2zM0 0h1'/></g>", "d",
-                 "M1 2zM0 0h1M1 2h.01");
+                 "M1 2zM0 0h1M0.996 2h.008");
     assert_value("<path id='a' d='M 1 2 h 1.e1 v 4'/>", "d", "M 1 2 h");
     assert_value("<g style='dominant-baseline:middle'><text id='a'/></g>", "baseline-shift",
                  "-27%");

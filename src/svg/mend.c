@@ -185,11 +185,12 @@ static void mend_points(xmlNode *node)
     const char *s = (const char *)text, *good = s;
     double v;
     int n = 0;
+    s = s ? fl_css_space(s) : NULL;
     while (s && fl_number_read(&s, &v)) {
         if (++n % 2 == 0)
             good = s;
-        s += strspn(s, FL_CSS_SPACE);
-        s += *s == ',';
+        s = fl_css_space(s);
+        s = *s == ',' ? fl_css_space(s + 1) : s;
     }
     if (!s || (!*s && n % 2 == 0))
         return;
@@ -237,9 +238,11 @@ static void mend_clip(xmlNode *node, GHashTable *ids)
 
 /* ---- paths ---- */
 
-/** Appends a line of next to no length for each subpath that has none. */
-static void append_dots(GString *d, const FlOutlines *outlines)
+/** Appends a line of next to no length for each subpath that has none. Returns: true if all have.
+ */
+static bool append_dots(GString *d, const FlOutlines *outlines)
 {
+    bool all = true;
     for (int i = 0; i < outlines->n_subpaths; i++) {
         const FlSubpath *sub = &outlines->subpath[i];
         const FlPoint at = outlines->cubic[sub->first].p[0];
@@ -248,10 +251,12 @@ static void append_dots(GString *d, const FlOutlines *outlines)
             const FlPoint p = outlines->cubic[sub->first + k / 4].p[k % 4];
             dot = p.x == at.x && p.y == at.y;
         }
-        g_autofree char *x = fl_css_number_text(at.x), *y = fl_css_number_text(at.y);
+        g_autofree char *x = fl_css_number_text(at.x - .004), *y = fl_css_number_text(at.y);
         if (dot)
-            g_string_append_printf(d, "M%s %sh.01", x, y);
+            g_string_append_printf(d, "M%s %sh.008", x, y);
+        all = all && dot;
     }
+    return all;
 }
 
 /** librsvg puts caps at a path that only moves, as charts write for a curve of one point, and
@@ -264,13 +269,13 @@ static void mend_caps(xmlNode *path)
     if (!d || (!square && strpbrk((const char *)d, "LlHhVvCcSsQqTtAaZz"))) // as nearly all have
         return;
     g_autoptr(FlOutlines) outlines = fl_outlines_of_shape(path, 96, (FlPageSize){1, 1});
-    GString *dotted = g_string_new((const char *)d);
-    append_dots(dotted, outlines);
+    GString *dots = g_string_new(NULL);
+    g_string_prepend(dots, append_dots(dots, outlines) ? "" : (const char *)d);
     if (outlines->n_subpaths == 0)
         fl_declare(path, "stroke-linecap:butt");
     else if (square)
-        fl_set_attribute(path, "d", dotted->str);
-    g_string_free(dotted, TRUE);
+        fl_set_attribute(path, "d", dots->str);
+    g_string_free(dots, TRUE);
 }
 
 /* ---- text ------------------------------------------------------------------------------------ */
