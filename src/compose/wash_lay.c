@@ -111,7 +111,8 @@ static inline float side_at(float away, float strength, float ragged)
     return fl_smooth(.5f + past / lost_px) - .5f;
 }
 
-/* The load of the brush, mostly within -1..1, with streaks of its hairs where it is dry. */
+/* The load of the brush, mostly within -1..1, with streaks of its hairs where it is dry,
+ * and islands of paper that it skipped where it held little. */
 static inline float load_at(const Brush *brush, const Slow slow, float ragged)
 {
     const FlWash *wash = brush->wash;
@@ -122,7 +123,9 @@ static inline float load_at(const Brush *brush, const Slow slow, float ragged)
     const float *load = brush->load + ((int)whole & (LOADS - 1));
     const float along = wash->along[0] * slow[FL_WASH_X] + wash->along[1] * slow[FL_WASH_Y];
     const float hairs = ragged_at(brush, slow[FL_WASH_PASS] * wash->brush_px, .08f * along);
-    return load[0] + (load[1] - load[0]) * next + .6f * dry * hairs;
+    const float held = load[0] + (load[1] - load[0]) * next, lines = slow[FL_WASH_LINES];
+    const float skipped = fl_smooth(-1.5f * held - .4f) * fl_smooth(4 * (hairs + ragged) - 4.4f);
+    return lines * (held + dry * (.6f * hairs - 5 * lines * lines * skipped));
 }
 
 /* The ln of the factor on the amount by a wash of strength 1, and the balance of the pigments, at a
@@ -134,12 +137,12 @@ static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
     const FlWashStyle *style = &brush->wash->style;
     const float lines = slow[FL_WASH_LINES], strength = slow[FL_WASH_FRONTS];
     const float ragged = ragged_at(brush, slow[FL_WASH_X], slow[FL_WASH_Y]);
-    const float load = style->passes * lines * load_at(brush, slow, ragged);
+    const float load = style->passes * load_at(brush, slow, ragged);
     const float front = front_at(slow[FL_WASH_FRONT], strength, ragged);
     const float side = side_at(slow[FL_WASH_FRONT], strength, ragged);
     const float heavy = .05f * MAX(slow[FL_WASH_HUE], 0);
     const float rough = lines * (slow[FL_WASH_ROUGH] + heavy) * ragged;
-    *hue = slow[FL_WASH_HUE] + .4f * load + .3f * front + 3 * rough;
+    *hue = slow[FL_WASH_HUE] + .4f * MAX(load, -1) + .3f * front + 3 * rough;
     return slow[FL_WASH_TONE] + .27f * load + .36f * front + rough +
            .3f * MAX(style->tide, style->blooms) * lines * side;
 }
