@@ -523,9 +523,8 @@ static void keep_shown(Cascade *c, const xmlNode *node)
     const xmlNode *target = fl_is(node, "use") ? fl_shown_by_use(node, c->ids) : NULL;
     if (target && !g_hash_table_contains(c->shown, target) && target_needs_variables(c, target))
         g_hash_table_insert(c->shown, (gpointer)target, copy_linked(target));
-    for (const xmlNode *child = node->children; child; child = child->next)
-        if (child->type == XML_ELEMENT_NODE)
-            keep_shown(c, child);
+    FL_EACH_ELEMENT (child, node)
+        keep_shown(c, child);
 }
 
 /** Makes a <use> a group with a copy of what it shows, if that has variables. */
@@ -665,9 +664,8 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
         fl_set_attribute(node, "style", text->str);
     g_string_free(text, TRUE);
     show_with_variables(c, node, &style);
-    for (xmlNode *child = node->children; child && !fl_is(node, "foreignObject");
-         child = child->next)
-        if (child->type == XML_ELEMENT_NODE)
+    if (!fl_is(node, "foreignObject"))
+        FL_EACH_ELEMENT (child, node)
             visit(c, child, &style);
     const char *left_out = fl_css_effects_apply(&effects, node, &style.units, &c->n_clips);
     if (left_out)

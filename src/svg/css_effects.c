@@ -515,9 +515,8 @@ static void visit_strokes(xmlNode *node, const FlAffine *around, const FlCssUnit
     const FlAffine all = fl_affine_multiply(around, &own);
     if (vector && strcmp(vector, "non-scaling-stroke") == 0)
         keep_stroke(node, around, &all, units);
-    for (xmlNode *child = node->children; child; child = child->next)
-        if (child->type == XML_ELEMENT_NODE)
-            visit_strokes(child, &all, units);
+    FL_EACH_ELEMENT (child, node)
+        visit_strokes(child, &all, units);
 }
 
 void fl_css_keep_strokes(xmlNode *root, const FlCssUnits *units)

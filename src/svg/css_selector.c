@@ -404,10 +404,7 @@ GPtrArray *fl_selectors_parse(const char *text)
 
 static const xmlNode *next_element(const xmlNode *node, bool backwards)
 {
-    do
-        node = backwards ? node->prev : node->next;
-    while (node && node->type != XML_ELEMENT_NODE);
-    return node;
+    return (backwards ? xmlPreviousElementSibling : xmlNextElementSibling)((xmlNode *)node);
 }
 
 static const xmlNode *parent_element(const xmlNode *node)
@@ -518,9 +515,8 @@ static bool has_class(const xmlNode *node, const char *class)
 
 static bool is_link(const xmlNode *node)
 {
-    g_autoptr(xmlChar) href = fl_is(node, "a") ? fl_attribute(node, "href") : NULL;
-    g_autofree char *foreign = fl_is(node, "a") ? fl_foreign_attribute(node, "href") : NULL;
-    return href || foreign;
+    g_autofree char *href = fl_is(node, "a") ? fl_href(node) : NULL;
+    return href != NULL;
 }
 
 static bool is_empty(const xmlNode *node)

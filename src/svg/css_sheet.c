@@ -483,12 +483,12 @@ static void take_link(Reader *reader, const xmlNode *node, const Place *place)
 
 static void take_elements(Reader *reader, xmlNode *node, const Place *place)
 {
-    for (xmlNode *child = node->children; child; child = child->next)
+    FL_EACH_ELEMENT (child, node)
         if (fl_is(child, "style"))
             take_element(reader, child, place);
-        else if (child->type == XML_ELEMENT_NODE && xmlStrEqual(child->name, (xmlChar *)"link"))
+        else if (xmlStrEqual(child->name, (xmlChar *)"link"))
             take_link(reader, child, place);
-        else if (child->type == XML_ELEMENT_NODE)
+        else
             take_elements(reader, child, place);
 }
 

@@ -60,11 +60,15 @@ char *fl_foreign_attribute(const xmlNode *node, const char *name)
     return NULL;
 }
 
+char *fl_href(const xmlNode *node)
+{
+    g_autoptr(xmlChar) plain = fl_attribute(node, "href");
+    return plain ? g_strstrip(g_strdup((const char *)plain)) : fl_foreign_attribute(node, "href");
+}
+
 const xmlNode *fl_shown_by_use(const xmlNode *use, GHashTable *ids)
 {
-    g_autoptr(xmlChar) plain = fl_attribute(use, "href");
-    g_autofree char *foreign = plain ? NULL : fl_foreign_attribute(use, "href");
-    const char *href = plain ? (const char *)plain : foreign;
+    g_autofree char *href = fl_href(use);
     return href && *href == '#' ? g_hash_table_lookup(ids, href + 1) : NULL;
 }
 
@@ -352,13 +356,10 @@ static void expand_namespaces(xmlDoc *doc, xmlNs *ns)
 /** An <svg> inside HTML needs no namespace, and lacks it when it is saved as a file. */
 static void set_namespace(xmlNode *node, xmlNs *ns)
 {
-    for (; node; node = node->next) {
-        if (node->type != XML_ELEMENT_NODE)
-            continue;
-        if (!node->ns)
-            xmlSetNs(node, ns);
-        set_namespace(node->children, ns);
-    }
+    if (!node->ns)
+        xmlSetNs(node, ns);
+    FL_EACH_ELEMENT (child, node)
+        set_namespace(child, ns);
 }
 
 static bool check_length(const Visit *visit, const xmlAttr *a, GError **error)
@@ -418,8 +419,8 @@ static bool visit_node(Visit *visit, xmlNode *node, int depth, GError **error)
     }
     if (!count_entities(visit, node->children, error))
         return false;
-    for (xmlNode *child = node->children; child; child = child->next)
-        if (child->type == XML_ELEMENT_NODE && !visit_node(visit, child, depth + 1, error))
+    FL_EACH_ELEMENT (child, node)
+        if (!visit_node(visit, child, depth + 1, error))
             return false;
     return true;
 }
@@ -475,9 +476,8 @@ static void collect_ids(xmlNode *node, GHashTable *ids)
     g_autoptr(xmlChar) id = fl_attribute(node, "id");
     if (id && !g_hash_table_contains(ids, id))
         g_hash_table_insert(ids, g_strdup((const char *)id), node);
-    for (xmlNode *child = node->children; child; child = child->next)
-        if (child->type == XML_ELEMENT_NODE)
-            collect_ids(child, ids);
+    FL_EACH_ELEMENT (child, node)
+        collect_ids(child, ids);
 }
 
 GHashTable *fl_document_ids(xmlDoc *doc)

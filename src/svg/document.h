@@ -66,6 +66,15 @@ char *fl_foreign_attribute(const xmlNode *node, const char *name);
  * missing. */
 const xmlNode *fl_shown_by_use(const xmlNode *use, GHashTable *ids);
 
+/** Visits the elements among the children of a node, which stay in their places. */
+#define FL_EACH_ELEMENT(child, node)                                                               \
+    for (xmlNode *child = xmlFirstElementChild((xmlNode *)(node)); child;                          \
+         child = xmlNextElementSibling(child))
+
+/** The href of an element, with a prefix or without; to be freed with g_free(); NULL without one.
+ */
+char *fl_href(const xmlNode *node);
+
 /** Returns: true if node is an element of SMIL that animates another. */
 bool fl_is_animation(const xmlNode *node);
 

@@ -9,13 +9,6 @@ static bool is_background(const char *name)
     return name && (strcmp(name, "BackgroundImage") == 0 || strcmp(name, "BackgroundAlpha") == 0);
 }
 
-static xmlNode *first_element(xmlNode *node)
-{
-    while (node && node->type != XML_ELEMENT_NODE)
-        node = node->next;
-    return node;
-}
-
 /** The attribute by which an element reads the background; NULL for other elements. */
 static const char *background_input(const xmlNode *node)
 {
@@ -28,16 +21,14 @@ static const char *background_input(const xmlNode *node)
     return NULL;
 }
 
-/** Makes inputs that are the background EMPTY. Returns: whether there were any. */
-static bool replace_inputs(xmlNode *node)
+/** Makes inputs of a filter that are the background EMPTY. Returns: true if it had any. */
+static bool replace_inputs(xmlNode *filter)
 {
     bool found = false;
-    for (; node; node = node->next) {
-        if (node->type != XML_ELEMENT_NODE)
-            continue;
-        for (const char *input; (input = background_input(node)); found = true)
-            fl_set_attribute(node, input, EMPTY);
-        found = replace_inputs(node->children) || found;
+    FL_EACH_ELEMENT (child, filter) {
+        for (const char *input; (input = background_input(child)); found = true)
+            fl_set_attribute(child, input, EMPTY);
+        found = replace_inputs(child) || found;
     }
     return found;
 }
@@ -45,8 +36,8 @@ static bool replace_inputs(xmlNode *node)
 /** The mode of a filter that only blends with the background, or NULL; to be freed. */
 static char *blend_mode(xmlNode *filter)
 {
-    xmlNode *only = first_element(filter->children);
-    if (!only || !fl_is(only, "feBlend") || first_element(only->next))
+    xmlNode *only = xmlFirstElementChild(filter);
+    if (!only || !fl_is(only, "feBlend") || xmlNextElementSibling(only))
         return NULL;
     g_autoptr(xmlChar) in = fl_attribute(only, "in");
     g_autoptr(xmlChar) in2 = fl_attribute(only, "in2");
@@ -60,8 +51,8 @@ static char *blend_mode(xmlNode *filter)
  * background. */
 static bool empty_background(xmlNode *filter)
 {
-    xmlNode *first = first_element(filter->children);
-    if (!first || !replace_inputs(first))
+    xmlNode *first = xmlFirstElementChild(filter);
+    if (!replace_inputs(filter))
         return false;
     xmlNode *flood = xmlNewDocNode(filter->doc, filter->ns, (const xmlChar *)"feFlood", NULL);
     fl_set_attribute(flood, "flood-opacity", "0");
@@ -72,39 +63,32 @@ static bool empty_background(xmlNode *filter)
     return true;
 }
 
-/** Visits the filters from node on; `modes` gets "url(#id)" -> mode of those that only blend. */
+/** Visits a node and the filters in it; `modes` gets "url(#id)" -> mode of those that only blend.
+ */
 static bool change_filters(xmlNode *node, GHashTable *modes)
 {
     bool emptied = false;
-    for (; node; node = node->next) {
-        if (node->type != XML_ELEMENT_NODE)
-            continue;
-        g_autofree char *mode = fl_is(node, "filter") ? blend_mode(node) : NULL;
-        g_autoptr(xmlChar) id = fl_attribute(node, "id");
-        if (mode && id)
-            g_hash_table_replace(modes, g_strdup_printf("url(#%s)", (const char *)id),
-                                 g_steal_pointer(&mode));
-        else if (fl_is(node, "filter"))
-            emptied = empty_background(node) || emptied;
-        else
-            emptied = change_filters(node->children, modes) || emptied;
-    }
+    g_autofree char *mode = fl_is(node, "filter") ? blend_mode(node) : NULL;
+    g_autoptr(xmlChar) id = fl_attribute(node, "id");
+    if (mode && id)
+        g_hash_table_replace(modes, g_strdup_printf("url(#%s)", (const char *)id),
+                             g_steal_pointer(&mode));
+    else if (fl_is(node, "filter"))
+        return empty_background(node);
+    FL_EACH_ELEMENT (child, node)
+        emptied = change_filters(child, modes) || emptied;
     return emptied;
 }
 
 static void set_modes(xmlNode *node, GHashTable *modes)
 {
-    for (; node; node = node->next) {
-        if (node->type != XML_ELEMENT_NODE)
-            continue;
-        g_autofree char *filter = fl_property(node, "filter");
-        const char *mode = filter ? g_hash_table_lookup(modes, filter) : NULL;
-        if (mode) {
-            g_autofree char *style = g_strdup_printf("filter:none;mix-blend-mode:%s", mode);
-            fl_declare(node, style);
-        }
-        set_modes(node->children, modes);
-    }
+    g_autofree char *filter = fl_property(node, "filter");
+    const char *mode = filter ? g_hash_table_lookup(modes, filter) : NULL;
+    g_autofree char *style = mode ? g_strdup_printf("filter:none;mix-blend-mode:%s", mode) : NULL;
+    if (style)
+        fl_declare(node, style);
+    FL_EACH_ELEMENT (child, node)
+        set_modes(child, modes);
 }
 
 void fl_document_drop_background(xmlDoc *doc, const char *path, int number, FlWarnings *warnings)

@@ -31,14 +31,11 @@ static void add_declarations(Wanted *wanted, const xmlNode *node)
 
 static void look_at(Wanted *wanted, const xmlNode *node)
 {
-    for (; node; node = node->next) {
-        if (node->type != XML_ELEMENT_NODE)
-            continue;
-        add_declarations(wanted, node);
-        if (fl_is(node, "text"))
-            add_letters(wanted, node);
-        look_at(wanted, node->children);
-    }
+    add_declarations(wanted, node);
+    if (fl_is(node, "text"))
+        add_letters(wanted, node);
+    FL_EACH_ELEMENT (child, node)
+        look_at(wanted, child);
 }
 
 /* The families that declarations name, as a set; of `font`, the words after the size. */

@@ -267,8 +267,8 @@ static bool check_node(const Check *check, xmlNode *node, GError **error)
         if (!good)
             return false;
     }
-    for (xmlNode *child = node->children; child; child = child->next)
-        if (child->type == XML_ELEMENT_NODE && !check_node(check, child, error))
+    FL_EACH_ELEMENT (child, node)
+        if (!check_node(check, child, error))
             return false;
     return true;
 }

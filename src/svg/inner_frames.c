@@ -12,11 +12,10 @@
 static GPtrArray *inkscape_pages(const xmlDoc *doc)
 {
     GPtrArray *pages = g_ptr_array_new();
-    for (const xmlNode *view = xmlDocGetRootElement(doc)->children; view; view = view->next)
-        if (view->type == XML_ELEMENT_NODE && xmlStrEqual(view->name, (const xmlChar *)"namedview"))
-            for (xmlNode *page = view->children; page; page = page->next)
-                if (page->type == XML_ELEMENT_NODE &&
-                    xmlStrEqual(page->name, (const xmlChar *)"page"))
+    FL_EACH_ELEMENT (view, xmlDocGetRootElement(doc))
+        if (xmlStrEqual(view->name, (const xmlChar *)"namedview"))
+            FL_EACH_ELEMENT (page, view)
+                if (xmlStrEqual(page->name, (const xmlChar *)"page"))
                     g_ptr_array_add(pages, page);
     return pages;
 }

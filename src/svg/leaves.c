@@ -224,9 +224,7 @@ static void walk_unit(Walk *w, xmlNode *node)
 static void walk(Walk *w, xmlNode *node)
 {
     int index = -1;
-    for (xmlNode *child = node->children; child; child = child->next) {
-        if (child->type != XML_ELEMENT_NODE)
-            continue;
+    FL_EACH_ELEMENT (child, node) {
         index++;
         if (fl_is_undrawn(child) || is_hidden(child))
             continue;

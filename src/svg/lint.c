@@ -144,9 +144,7 @@ static void check_foreign(const Lint *lint, xmlNode *node)
 {
     if (fl_is(node->parent, "switch"))
         return; // it has something else to draw
-    const xmlNode *box = node->children;
-    while (box && box->type != XML_ELEMENT_NODE)
-        box = box->next;
+    const xmlNode *box = xmlFirstElementChild(node);
     g_autofree char *background = box ? fl_property(box, "background") : NULL;
     g_autofree char *name = NULL, *arguments = NULL;
     g_autofree char *colour =
@@ -227,9 +225,8 @@ static void lint_node(const Lint *lint, xmlNode *node)
         warn(lint, node->parent, "the animation in it is not played: the base value is drawn");
     if (fl_is(node, "path"))
         check_path(lint, node);
-    for (xmlNode *child = node->children; child; child = child->next)
-        if (child->type == XML_ELEMENT_NODE)
-            lint_node(lint, child);
+    FL_EACH_ELEMENT (child, node)
+        lint_node(lint, child);
 }
 
 void fl_lint(xmlDoc *doc, const char *path, int number, FlWarnings *warnings)

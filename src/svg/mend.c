@@ -12,20 +12,12 @@
 
 #define MOST_CLIPS 16 // of clip paths that clip each other
 
-static xmlNode *element_beside(xmlNode *node, bool before)
-{
-    do
-        node = before ? node->prev : node->next;
-    while (node && node->type != XML_ELEMENT_NODE);
-    return node;
-}
-
 /* ---- drop shadows ---------------------------------------------------------------------------- */
 
 /** The name of a filter step's input, to be freed; names the step before it if that has no name. */
 static char *name_input(xmlNode *step, int number)
 {
-    xmlNode *before = element_beside(step, true);
+    xmlNode *before = xmlPreviousElementSibling(step);
     xmlChar *in = fl_attribute(step, "in");
     if (!in && before)
         in = fl_attribute(before, "result");
@@ -160,19 +152,19 @@ static double share_of(const xmlNode *node, const char *name, double missing)
 /** A gradient of no length is the colour of its last stop. */
 static void mend_gradient(xmlNode *node)
 {
-    g_autofree char *template = fl_foreign_attribute(node, "href");
+    g_autofree char *template = fl_href(node);
     const bool linear = fl_is(node, "linearGradient");
     const double across = share_of(node, "x2", 1) - share_of(node, "x1", 0);
     const double down = share_of(node, "y2", 0) - share_of(node, "y1", 0);
     const bool long_enough = linear ? across != 0 || down != 0 : !(share_of(node, "r", .5) <= 0);
-    if (long_enough || template || xmlHasProp(node, (const xmlChar *)"href"))
+    if (long_enough || template)
         return;
     if (!linear) // librsvg draws nothing without a radius
         fl_set_attribute(node, "r", "1");
     xmlNode *stop = node->last;
     while (stop && !fl_is(stop, "stop"))
         stop = stop->prev;
-    while (stop && (stop = element_beside(stop, true)))
+    while (stop && (stop = xmlPreviousElementSibling(stop)))
         xmlNodeSetName(stop, (const xmlChar *)"desc"); // kept, since its id may be referred to
 }
 

@@ -29,8 +29,8 @@ bool fl_is_undrawn(const xmlNode *node)
 
 static void name_groups(xmlNode *node, GHashTable *ids, int *n_made)
 {
-    for (xmlNode *child = node->children; child; child = child->next) {
-        if (child->type != XML_ELEMENT_NODE || fl_is_undrawn(child))
+    FL_EACH_ELEMENT (child, node) {
+        if (fl_is_undrawn(child))
             continue;
         g_autoptr(xmlChar) id = fl_attribute(child, "id");
         if (!id && (fl_is_container(child) || fl_is(child, "use"))) {
@@ -142,9 +142,8 @@ static int put_ids_aside(xmlNode *node)
         fl_set_attribute(node, "id", NULL);
         fl_set_attribute(node, FL_COPIED_ID, (const char *)id);
     }
-    for (xmlNode *child = node->children; child; child = child->next)
-        if (child->type == XML_ELEMENT_NODE)
-            n += put_ids_aside(child);
+    FL_EACH_ELEMENT (child, node)
+        n += put_ids_aside(child);
     return n;
 }
 

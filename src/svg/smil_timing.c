@@ -116,9 +116,7 @@ static GArray *read_conditions(const FlTimeline *timeline, const xmlNode *node, 
 
 xmlNode *fl_timeline_referred(const FlTimeline *timeline, const xmlNode *node, xmlNode *missing)
 {
-    g_autofree char *plain = fl_trimmed_attribute(node, "href");
-    g_autofree char *foreign = plain ? NULL : fl_foreign_attribute(node, "href");
-    const char *href = plain ? plain : foreign;
+    g_autofree char *href = fl_href(node);
     return !href ? missing : *href == '#' ? g_hash_table_lookup(timeline->ids, href + 1) : NULL;
 }
 
@@ -149,9 +147,7 @@ static double active_duration(const xmlNode *node, double dur)
 
 static void collect(FlTimeline *timeline, xmlNode *node)
 {
-    for (xmlNode *child = node->children; child; child = child->next) {
-        if (child->type != XML_ELEMENT_NODE)
-            continue;
+    FL_EACH_ELEMENT (child, node) {
         if (fl_is_animation(child)) {
             FlAnimation *a = g_new0(FlAnimation, 1);
             a->node = child;

@@ -134,9 +134,8 @@ static const xmlNode *element_of(const Reader *r, const char *target)
 /** The element that a href refers to; NULL without one. */
 static const xmlNode *referred_by(const Reader *r, const xmlNode *node)
 {
-    g_autoptr(xmlChar) plain = fl_attribute(node, "href");
-    g_autofree char *foreign = fl_foreign_attribute(node, "href");
-    return element_of(r, plain ? (const char *)plain : foreign);
+    g_autofree char *href = fl_href(node);
+    return element_of(r, href);
 }
 
 /** The element of a text that begins with url(); NULL without one. */
@@ -340,8 +339,8 @@ static void add_element(Reader *r, const xmlNode *node, const FlInherited *s, co
 
 static void add_children(Reader *r, const xmlNode *node, const FlInherited *s, const Around *around)
 {
-    for (const xmlNode *child = node->children; child; child = child->next) {
-        if (child->type != XML_ELEMENT_NODE || fl_is_undrawn(child))
+    FL_EACH_ELEMENT (child, node) {
+        if (fl_is_undrawn(child))
             continue;
         const FlInherited own = fl_inherited_from(&r->svg->inheritance, child, s);
         add_element(r, child, &own, around);
