@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/curves.h"
+#include "guides/distance.h"
 #include "guides/guides.h"
 #include <math.h>
 
@@ -157,39 +158,6 @@ static bool find_first(const FlWet *wet, FlMarker *marker, int frame, GError **e
     return true;
 }
 
-/** Steps of the distances of find_beyond(): to a neighbour, and across. */
-#define STRAIGHT 0.96f
-#define ACROSS 1.36f
-
-/** One way over the rows: of step 1, or -1. */
-static void spread(float *distance, FlRect rect, int way)
-{
-    const int width = rect.width;
-    for (int k = 0; k < rect.height; k++) {
-        float *row = distance + (size_t)(way > 0 ? k : rect.height - 1 - k) * (size_t)width;
-        const float *last = k > 0 ? row - way * width : NULL;
-        for (int x = 0; x < width && last; x++) {
-            row[x] = MIN(row[x], last[x] + STRAIGHT);
-            row[x] = MIN(row[x], last[MAX(x - 1, 0)] + ACROSS);
-            row[x] = MIN(row[x], last[MIN(x + 1, width - 1)] + ACROSS);
-        }
-        for (int x = 1; x < width; x++)
-            row[x] = MIN(row[x], row[x - 1] + STRAIGHT);
-        for (int x = width - 2; x >= 0; x--)
-            row[x] = MIN(row[x], row[x + 1] + STRAIGHT);
-    }
-}
-
-/** The distance of each pixel to the masks ahead, exact to a twentieth. */
-static void find_beyond(Planes *planes)
-{
-    const size_t n = fl_rect_pixels(planes->rect);
-    for (size_t p = 0; p < n; p++)
-        planes->beyond[p] = planes->ahead[p] >= FL_INSIDE ? 0 : 1e6f;
-    spread(planes->beyond, planes->rect, 1);
-    spread(planes->beyond, planes->rect, -1);
-}
-
 /** The distances in the frame before, as far as they were found then. */
 static bool find_before(const FlWet *wet, FlMarker *marker, int frame, Planes *planes,
                         GError **error)
@@ -212,9 +180,11 @@ static bool read_planes(const FlWetStep *step, FlMarker *marker, int before, int
     const FlRect rect = planes->rect;
     if (!fl_wet_get_mask(wet, region, now, rect, planes->now, error) ||
         !read_ahead(wet, marker->plan, now, planes, error) ||
-        !find_before(wet, marker, before, planes, error))
+        !find_before(wet, marker, before, planes, error) ||
+        !fl_distance(planes->ahead, rect.width, rect.height, planes->beyond, error))
         return false;
-    find_beyond(planes);
+    for (size_t p = 0; p < fl_rect_pixels(rect); p++) // of each pixel to the masks ahead
+        planes->beyond[p] = MAX(-planes->beyond[p], 0);
     find_touches(wet, region, planes);
     return !moves || !wet->motion ||
            fl_wet_get_motion(wet, region, before, now, rect, planes->motion, error);

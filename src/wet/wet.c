@@ -169,19 +169,18 @@ static bool only_pans(const FlAffine *map)
 static bool move_sheet(FlWet *wet, const FlAffine *came, GError **error)
 {
     FlAffine from = *came;
-    bool moved;
     if (only_pans(came)) {
         wet->camera_x -= (float)came->x0, wet->camera_y -= (float)came->y0;
         const float dx = floorf(wet->camera_x + 0.5f), dy = floorf(wet->camera_y + 0.5f);
         wet->camera_x -= dx, wet->camera_y -= dy;
-        moved = fl_wet_sheet_move(&wet->sheet, (int)dx, (int)dy, error);
+        from.x0 = (double)-dx, from.y0 = (double)-dy;
     } else {
         from.x0 -= wet->camera_x, from.y0 -= wet->camera_y;
         wet->camera_x = wet->camera_y = 0;
-        moved = fl_wet_sheet_turn(&wet->sheet, &from, error);
     }
     fl_wet_place_cells(wet);
-    return moved;
+    const bool stays = only_pans(&from) && from.x0 == 0 && from.y0 == 0;
+    return stays || fl_wet_sheet_turn(&wet->sheet, &from, error);
 }
 
 static bool do_step(FlWet *wet, int before, int frame, GError **error)

@@ -84,24 +84,6 @@ void fl_wet_sheet_restore(FlWetSheet *sheet, FlRect wet, const FlWetCell *cells,
     fl_rect_copy(cells, wet, sheet->cell, sheet->page, sizeof *cells);
 }
 
-bool fl_wet_sheet_move(FlWetSheet *sheet, int dx, int dy, GError **error)
-{
-    const FlRect page = sheet->page, to = {dx, dy, page.width, page.height};
-    if (dx == 0 && dy == 0)
-        return true;
-    FlWetCell *moved = fl_alloc(fl_rect_pixels(page), sizeof *moved, "the paper's marks", error);
-    if (!moved)
-        return false;
-    fl_rect_copy(sheet->cell, to, moved, page, sizeof *moved);
-    free(sheet->cell);
-    sheet->cell = moved;
-    const FlAffine from = {1, 0, 0, 1, -dx, -dy};
-    sheet->fibres.place = fl_affine_multiply(&sheet->fibres.place, &from);
-    sheet->wet = fl_rect_and(
-        (FlRect){sheet->wet.x + dx, sheet->wet.y + dy, sheet->wet.width, sheet->wet.height}, page);
-    return true;
-}
-
 /** Adds a share of a cell's paint: ink, age, granulation and line are means by amounts. */
 static void mix_in(const FlWetCell *cell, float share, FlWetCell *sum)
 {

@@ -62,9 +62,6 @@ void fl_wet_sheet_clear(FlWetSheet *sheet);
 
 FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t cell);
 
-/** Moves the paper with all marks, by whole cells. */
-bool fl_wet_sheet_move(FlWetSheet *sheet, int dx, int dy, GError **error);
-
 /** Moves the paper with all marks: a cell has come from `from` of its place. */
 bool fl_wet_sheet_turn(FlWetSheet *sheet, const FlAffine *from, GError **error);
 
