@@ -71,7 +71,7 @@ static Tones *lay_frame_of(const FlDrawing *drawing, int frame, const FlWashStyl
                                       .from = FL_FROM_ENGINE,
                                       .share = 1,
                                       .anchor = fl_drawing_anchor(drawing, r, frame),
-                                      .drift = fl_drawing_drift(drawing, r, frame, false)};
+                                      .drift = fl_drawing_drift(drawing, r, -1, frame, false)};
         region[r].n_limbs = fl_drawing_limbs(drawing, r, frame, region[r].limb);
         painted[r] = &region[r], painted_of[r] = r;
     }
@@ -260,6 +260,8 @@ static void paint_that_moves_is_dark_behind(void)
                                     90 + 8 * MIN(t, MOVES));
     g_autoptr(Scratch) folder = scratch_make();
     g_autoptr(FlDrawing) drawing = open_film(folder, (const char *const *)frames);
+    g_assert_cmpfloat(fl_drawing_drift(drawing, 0, -1, 5, false).pace, >, 7.9f);
+    g_assert_cmpfloat(fl_drawing_drift(drawing, 0, 0, 5, false).pace, ==, 0); // on moving paper
     const double moving = leftwards(drawing, 0, 90);
     double before = moving;
     for (int t = 1; t < FRAMES; t++) {

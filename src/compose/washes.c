@@ -133,16 +133,12 @@ static void find_box(FlWash *wash, const FlComposeInput *input, FlRect around)
 }
 
 /* The side of the shadow of a region: paint that moves is dark behind, where it dries first, and
- * pale ahead, where it is wet. A ground has its own light. */
+ * pale ahead, where it is wet. */
 static void turn_light(const FlWashField *field, const FlPaintedRegion *painted, float light[2])
 {
-    const FlComposeInput *input = field->input;
     const FlDrift *drift = &painted->drift;
-    const float side = painted->anchor.side;
-    const float of_page = side * side / ((float)input->width * (float)input->height);
-    const float wet = MIN((float)painted->settings->front * painted->style->front.width, 1) *
-                      (1 - fl_ease(.22f, .4f, of_page));
-    const float back = wet / (drift->pace + SLOW_PX * input->paper_px);
+    const float wet = MIN((float)painted->settings->front * painted->style->front.width, 1);
+    const float back = wet / (drift->pace + SLOW_PX * field->input->paper_px);
     const float rest = 1 - back * hypotf(drift->x, drift->y);
     light[0] = rest * field->light[0] - MOVED * back * drift->x;
     light[1] = rest * field->light[1] - MOVED * back * drift->y;

@@ -130,8 +130,9 @@ bool fl_drawing_stands_still(const FlDrawing *drawing);
 FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame);
 
 /** The mean motion of a region's anchor over the frames up to one, of which the middle ones weigh
- * most; before its first frame a region moves as after it. loop: frame 0 follows the last. */
-FlDrift fl_drawing_drift(const FlDrawing *drawing, int region, int frame, bool loop);
+ * most; before its first frame a region moves as after it. ground: a region that the paper moves
+ * with; -1: the paper rests. loop: frame 0 follows the last. */
+FlDrift fl_drawing_drift(const FlDrawing *drawing, int region, int ground, int frame, bool loop);
 
 /** The limbs of a region that are seen in a frame, FL_LIMBS at most; none if its shapes move as one
  * through the film. Returns: their number. */

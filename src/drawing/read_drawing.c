@@ -70,7 +70,18 @@ FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame)
 
 #define DRIFT_FRAMES 16
 
-FlDrift fl_drawing_drift(const FlDrawing *drawing, int region, int frame, bool loop)
+/* The way of a region's anchor from a frame to another; 0 without it. */
+static FlPoint way_between(const FlDrawing *drawing, int region, int from, int to)
+{
+    if (region < 0)
+        return (FlPoint){0, 0};
+    const FlAnchor *was = &drawing->frame[from].anchor[region];
+    const FlAnchor *is = &drawing->frame[to].anchor[region];
+    const bool known = was->cosine != 0 || was->sine != 0;
+    return known ? (FlPoint){is->x - was->x, is->y - was->y} : (FlPoint){0, 0};
+}
+
+FlDrift fl_drawing_drift(const FlDrawing *drawing, int region, int ground, int frame, bool loop)
 {
     const int n = fl_drawing_frames(drawing);
     const int first = MIN(fl_drawing_region(drawing, region)->first_frame, MAX(n - 2, 0));
@@ -79,13 +90,11 @@ FlDrift fl_drawing_drift(const FlDrawing *drawing, int region, int frame, bool l
     for (int k = 0; k < DRIFT_FRAMES; k++) {
         const int before = frame - k - 1;
         const int from = loop ? (before % n + n) % n : CLAMP(before, first, MAX(n - 2, first));
-        const FlAnchor *was = &drawing->frame[from].anchor[region];
-        const FlAnchor *is = &drawing->frame[(from + 1) % n].anchor[region];
         const float share = (float)((k + 1) * (DRIFT_FRAMES - k)) / all;
-        if (was->cosine == 0 && was->sine == 0)
-            continue; // it is not there yet
-        drift.x += share * (is->x - was->x), drift.y += share * (is->y - was->y);
-        drift.pace += share * hypotf(is->x - was->x, is->y - was->y);
+        const FlPoint way = way_between(drawing, region, from, (from + 1) % n);
+        const FlPoint paper = way_between(drawing, ground, from, (from + 1) % n);
+        const float x = (float)(way.x - paper.x), y = (float)(way.y - paper.y);
+        drift.x += share * x, drift.y += share * y, drift.pace += share * hypotf(x, y);
     }
     return drift;
 }
