@@ -123,9 +123,6 @@ int fl_drawing_earlier(const FlDrawing *drawing);
  */
 int fl_drawing_shown(const FlDrawing *drawing, int frame);
 
-/** True if any frame shows the picture of another one. */
-bool fl_drawing_stands_still(const FlDrawing *drawing);
-
 /** A region's anchor in a frame; it depends on no other region. */
 FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame);
 

@@ -168,14 +168,6 @@ int fl_drawing_shown(const FlDrawing *drawing, int frame)
     return frame;
 }
 
-bool fl_drawing_stands_still(const FlDrawing *drawing)
-{
-    for (int t = 1; t < drawing->sequence->n; t++)
-        if (fl_drawing_shown(drawing, t) != t)
-            return true;
-    return false;
-}
-
 static void region_clear(void *data)
 {
     FlRegion *region = data;

@@ -7,13 +7,12 @@
 #include "keep/store.h"
 
 typedef struct FlRecord {
-    FlDigest request;  // of what was asked for, before any file was read
-    FlFacts *facts;    // all that decides the frames
-    FlFacts *inputs;   // the digests of the files that were read, by path
-    FlFacts *found;    // the folders of styles, by the names under which they were found
-    int done;          // frames that are painted
-    bool overwrite;    // the render may replace files that it has not written
-    GPtrArray *states; // GBytes: of the painters, see fl_painters_save()
+    FlDigest request; // of what was asked for, before any file was read
+    FlFacts *facts;   // all that decides the frames
+    FlFacts *inputs;  // the digests of the files that were read, by path
+    FlFacts *found;   // the folders of styles, by the names under which they were found
+    int done;         // frames that are painted
+    bool overwrite;   // the render may replace files that it has not written
 } FlRecord;
 
 FlRecord *fl_record_new(void);
@@ -25,7 +24,7 @@ bool fl_record_save(const FlRecord *record, const char *path, GError **error);
 /** Reads the file. Returns: NULL with FL_ERROR_CHANGED if it is missing or damaged. */
 FlRecord *fl_record_load(const char *path, GError **error);
 
-/** Keeps the record, without states, in the store. */
+/** Keeps the record in the store. */
 void fl_record_keep(const FlRecord *record, FlStore *store, FlDigest name);
 
 /** Reads a record's bytes, which need not be trusted. Returns: NULL if they are damaged. */

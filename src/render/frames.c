@@ -509,24 +509,6 @@ bool fl_frames_start_at(FlFrames *frames, int frame, GError **error)
     return seek_painters(frames, shown, fl_painter_start_at, error);
 }
 
-bool fl_frames_save(const FlFrames *frames, GPtrArray *states, GError **error)
-{
-    if (!fl_painters_save(&frames->painters, states, error))
-        return false;
-    GBytes *paper = frames->wet ? fl_wet_save(frames->wet, error) : g_bytes_new(NULL, 0);
-    if (paper)
-        g_ptr_array_add(states, paper);
-    return paper;
-}
-
-bool fl_frames_load(FlFrames *frames, GPtrArray *states, const char *path, GError **error)
-{
-    g_autoptr(GBytes) paper =
-        states->len > 0 ? g_ptr_array_steal_index(states, states->len - 1) : NULL;
-    return fl_painters_load(&frames->painters, states, path, error) &&
-           (!frames->wet || fl_wet_load(frames->wet, paper, error));
-}
-
 void fl_frames_init(FlFrames *frames, FlPlan *plan)
 {
     *frames = (FlFrames){.plan = plan,

@@ -68,12 +68,6 @@ bool fl_frames_start_at(FlFrames *frames, int frame, GError **error);
 bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composite, double *paint_s,
                     GError **error);
 
-/** The state after the last frame, as a list of GBytes. FL_ERROR_NO_MEMORY. */
-bool fl_frames_save(const FlFrames *frames, GPtrArray *states, GError **error);
-
-/** Restores the state; `path` is its file, for the message. FL_ERROR_CHANGED. */
-bool fl_frames_load(FlFrames *frames, GPtrArray *states, const char *path, GError **error);
-
 /** Tells the options' progress of a stage. done: frames; frame_s: seconds of the last one, 0 before
  * the first. FL_ERROR_INTERRUPTED. */
 bool fl_frames_tell(const FlFrames *frames, const char *stage, int done, double frame_s,

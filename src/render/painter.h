@@ -91,20 +91,6 @@ const FlGuides *fl_painter_guides(const FlPainter *painter);
 /** Frees the guides of the last picture. */
 void fl_painter_drop_guides(FlPainter *painter);
 
-/** The number of parts of a painter's state: see fl_painter_save(). */
-#define FL_PAINTER_PARTS 3
-
-/**
- * The state after the last painted frame: that of the engine (empty: it is in the cache), if frames
- * are held the picture, and the digests of the pictures so far, fl_reuse_save().
- *
- * parts: to be freed with g_bytes_unref(). Returns: false with FL_ERROR_NO_MEMORY set.
- */
-bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], GError **error);
-
-/** Restores the state of a painter that was made the same way. FL_ERROR_CHANGED. */
-bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], GError **error);
-
 /* ---- the guides of its pictures -------------------------------------------------------------- */
 
 /** The grid of the coarsest level, px of the guides. */

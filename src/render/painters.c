@@ -315,34 +315,3 @@ bool fl_painters_each(FlPainters *painters, int step, FlPainterWork work, void *
         note_cost(painters->painter[items[k].index], step, items[k].together);
     return true;
 }
-
-bool fl_painters_save(const FlPainters *painters, GPtrArray *states, GError **error)
-{
-    GError *first = NULL;
-    g_ptr_array_set_size(states, 0);
-    g_ptr_array_set_size(states, FL_PAINTER_PARTS * painters->n);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int p = 0; p < painters->n; p++) {
-        GError *failure = NULL;
-        GBytes **parts = (GBytes **)states->pdata + FL_PAINTER_PARTS * p;
-        if (!fl_painter_save(painters->painter[p], parts, &failure))
-            fl_parallel_error_keep(&first, failure);
-    }
-    return fl_parallel_error_propagate(error, first);
-}
-
-bool fl_painters_load(FlPainters *painters, const GPtrArray *states, const char *path,
-                      GError **error)
-{
-    GBytes *const *parts = (GBytes *const *)states->pdata;
-    if (states->len != (guint)(FL_PAINTER_PARTS * painters->n)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
-                    "%s: has the state of another number of regions; use ‘overwrite’ to start anew",
-                    path);
-        return false;
-    }
-    for (int p = 0; p < painters->n; p++)
-        if (!fl_painter_load(painters->painter[p], parts + FL_PAINTER_PARTS * p, error))
-            return false;
-    return true;
-}

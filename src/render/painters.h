@@ -53,14 +53,7 @@ void fl_painters_clear(FlPainters *painters);
 bool fl_painters_each(FlPainters *painters, int step, FlPainterWork work, void *data,
                       GError **error);
 
-/** The states of all painters as FL_PAINTER_PARTS bytes each, into a list of GBytes. */
-bool fl_painters_save(const FlPainters *painters, GPtrArray *states, GError **error);
-
 /** Pictures of this film's painters that an engine has made. */
 int fl_painters_painted(const FlPainters *painters);
-
-/** Restores the states; `path` is their file, for the message. FL_ERROR_CHANGED. */
-bool fl_painters_load(FlPainters *painters, const GPtrArray *states, const char *path,
-                      GError **error);
 
 #endif

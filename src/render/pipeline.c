@@ -28,7 +28,7 @@ typedef struct Pipeline {
 
 /* ---- a frame --------------------------------------------------------------------------------- */
 
-/* The task `writing`: the files of a frame, and then the state that follows it. */
+/* The task `writing`: the files of a frame, and then how far the render has come. */
 static bool write_finished(void *data, GError **error)
 {
     Pipeline *pipeline = data;
@@ -68,15 +68,12 @@ static bool inspect_frame(Pipeline *pipeline, double paint_s, double compose_s, 
     return fl_report_frame(pipeline->report, &done, error);
 }
 
-/* The state after a frame, once the files of the frame before are complete. */
-static bool take_state(Pipeline *pipeline, int frame, GError **error)
+/* Comes before the files of a frame, once those of the frame before are complete. */
+static bool before_files(Pipeline *pipeline, int frame, GError **error)
 {
     if (!finish_writing(pipeline, error) ||
         !fl_resume_before_files(&pipeline->resume, pipeline->frames.plan, frame, error) ||
         !fl_frame_writer_paint(&pipeline->writer, pipeline->frames.painters.painted, frame, error))
-        return false;
-    if (pipeline->resume.path &&
-        !fl_frames_save(&pipeline->frames, pipeline->resume.record->states, error))
         return false;
     pipeline->resume.record->done = frame + 1;
     return true;
@@ -92,7 +89,7 @@ static bool render_frame(Pipeline *pipeline, int frame, GError **error)
     if (!fl_frames_make(&pipeline->frames, frame, next, &composite, &paint_s, error))
         return false;
     const double compose_s = fl_seconds_since(start) - paint_s;
-    if (!take_state(pipeline, frame, error))
+    if (!before_files(pipeline, frame, error))
         return false;
     if (beside)
         g_clear_pointer(&composite.draws, fl_draw_list_free); // the files need the layers only
@@ -250,31 +247,21 @@ static bool note_obstacles(Pipeline *pipeline, GError **error)
     return true;
 }
 
-/* Loads the painters' states of an earlier run, or saves those before the first frame. */
-static bool restore_state(Pipeline *pipeline, GError **error)
-{
-    FlResume *resume = &pipeline->resume;
-    const FlPlan *plan = pipeline->frames.plan;
-    if (!fl_resume_start(resume, plan, error))
-        return false;
-    if (resume->found && resume->first > plan->out.first)
-        pipeline->frames.shown = fl_drawing_shown(plan->shapes.drawing, resume->first - 1);
-    if (resume->found)
-        return fl_frames_load(&pipeline->frames, resume->record->states, resume->path, error);
-    return !resume->path || fl_frames_save(&pipeline->frames, resume->record->states, error);
-}
-
-/* Masks, guides, and the state before the first frame. */
+/* Masks, guides, and what frames of an earlier run leave to the first one: their paint is in the
+ * cache, or is made again. */
 static bool paint_before(Pipeline *pipeline, GError **error)
 {
     FlFrames *frames = &pipeline->frames;
+    const int first = pipeline->resume.first;
     if (!fl_frames_prepare(frames, error))
         return false;
     const gint64 start = g_get_monotonic_time();
-    if (!fl_frames_lead_in(frames, error))
+    if (!fl_resume_start(&pipeline->resume, frames->plan, error) ||
+        !fl_frames_lead_in(frames, error) ||
+        (first > frames->plan->out.first && !fl_frames_seek(frames, first, error)))
         return false;
     pipeline->stats.paint_s = fl_seconds_since(start);
-    return restore_state(pipeline, error);
+    return true;
 }
 
 /* Everything before the first frame. */
@@ -386,8 +373,6 @@ static bool try_render(const FlRenderOptions *options, FlFrameTaker taker, bool 
                        : options->dry_run ? dry_run(&pipeline, error)
                                           : run(&pipeline, error));
     *stale = !done && fl_painters_stale(&pipeline.frames.painters);
-    if (*stale && options->overwrite == FL_OVERWRITE_KEEP)
-        pipeline.resume.forgets = true; // its frames are kept, its state is of no use
     clear(&pipeline);
     return done;
 }
@@ -399,16 +384,12 @@ static bool render(const FlRenderOptions *given, FlFrameTaker taker, GError **er
     bool stale = false;
     if (!fl_options_take(given, &options, error))
         return false;
-    FlRenderOptions again = options;
     if (options.threads > 0)
         (void)fl_schedule_set_threads(options.threads);
     bool done = try_render(&options, taker, &stale, error);
-    again.resume = false; // the state may be what is damaged; other paint is in the cache
-    if (options.overwrite == FL_OVERWRITE_REFUSE)
-        again.overwrite = FL_OVERWRITE_YES; // of frames that the first try has found free
     while (!done && stale) {
         g_clear_error(error);
-        done = try_render(&again, taker, &stale, error);
+        done = try_render(&options, taker, &stale, error);
     }
     (void)fl_schedule_set_threads(threads);
     return done;

@@ -208,46 +208,6 @@ void fl_reuse_keep(FlReuse *reuse, const uint8_t *rgb, size_t bytes, GBytes *sta
     fl_store_put(reuse->cache, FL_KEPT_PICTURE, reuse->last, parts, G_N_ELEMENTS(parts));
 }
 
-/* ---- renders that are resumed --------------------------------------------------------------- */
-
-GBytes *fl_reuse_save(const FlReuse *reuse)
-{
-    const GArray *digests = digests_of(reuse);
-    const guint n = reuse->cache ? reuse->n_done : 0;
-    return g_bytes_new(n > 0 ? digests->data : NULL, n * sizeof(FlDigest));
-}
-
-/* The state that was kept with the last picture; NULL: it is gone. */
-static GBytes *state_in_cache(const FlReuse *reuse)
-{
-    FlSpan packed;
-    g_autoptr(GBytes) kept = fl_store_get(reuse->cache, FL_KEPT_PICTURE, reuse->last);
-    return kept ? take_state(kept, &packed) : NULL;
-}
-
-bool fl_reuse_load(FlReuse *reuse, GBytes *digests, GBytes *state)
-{
-    gsize bytes;
-    const void *data = g_bytes_get_data(digests, &bytes);
-    const guint n = (guint)(bytes / sizeof(FlDigest));
-    if (reuse->known)
-        return true;
-    g_clear_pointer(&reuse->state, g_bytes_unref);
-    if (n == 0)
-        reuse->cache = NULL; // the chain lacks its first pictures
-    if (reuse->cache) {
-        g_array_set_size(reuse->made, 0);
-        g_array_append_vals(reuse->made, data, n);
-        reuse->n_done = n;
-        reuse->last = g_array_index(reuse->made, FlDigest, n - 1);
-    }
-    if (g_bytes_get_size(state) > 0)
-        reuse->state = g_bytes_ref(state);
-    else if (reuse->cache)
-        reuse->state = state_in_cache(reuse);
-    return reuse->state != NULL;
-}
-
 /* ---- the end -------------------------------------------------------------------------------- */
 
 void fl_reuse_finish(FlReuse *reuse)

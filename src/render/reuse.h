@@ -74,16 +74,6 @@ void fl_reuse_refuse_state(FlReuse *reuse);
 /** Keeps the picture that was painted instead, and the state that follows. */
 void fl_reuse_keep(FlReuse *reuse, const uint8_t *rgb, size_t bytes, GBytes *state);
 
-/** The digests so far as bytes, for a render that is resumed; to be freed. */
-GBytes *fl_reuse_save(const FlReuse *reuse);
-
-/**
- * The reverse, with the state of an engine or, where that is empty, the one in the cache.
- *
- * Returns: true if a state exists, in reuse->state unless the pictures are known.
- */
-bool fl_reuse_load(FlReuse *reuse, GBytes *digests, GBytes *state);
-
 /** Keeps the digests of the whole film, and the facts that decided them. */
 void fl_reuse_finish(FlReuse *reuse);
 

@@ -43,13 +43,6 @@ bool fl_wet_follow(FlWet *wet, FlWet *earlier, GError **error);
 /** Says if it has come to any frame yet. */
 bool fl_wet_begun(const FlWet *wet);
 
-/** The state after the last frame, from which another run goes on; to be freed with
- * g_bytes_unref(). Returns: NULL with FL_ERROR_NO_MEMORY. */
-GBytes *fl_wet_save(const FlWet *wet, GError **error);
-
-/** Goes on from a state of the same film, whose bytes need not be trusted. FL_ERROR_CHANGED. */
-bool fl_wet_load(FlWet *wet, GBytes *state, GError **error);
-
 /** The marks of the frame as a layer, and where its paint is noted for the next one. */
 const FlStainLayer *fl_wet_layer(const FlWet *wet);
 FlLaid *fl_wet_laid(FlWet *wet);

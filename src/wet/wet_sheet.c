@@ -77,13 +77,6 @@ FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t at)
                     c * (at / sheet->page.width) + c / 2);
 }
 
-void fl_wet_sheet_restore(FlWetSheet *sheet, FlRect wet, const FlWetCell *cells, FlAffine place)
-{
-    sheet->fibres.place = place;
-    sheet->wet = wet;
-    fl_rect_copy(cells, wet, sheet->cell, sheet->page, sizeof *cells);
-}
-
 /** Adds a share of a cell's paint: ink, age, granulation and line are means by amounts. */
 static void mix_in(const FlWetCell *cell, float share, FlWetCell *sum)
 {

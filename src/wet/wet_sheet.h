@@ -65,9 +65,6 @@ FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t cell);
 /** Moves the paper with all marks: a cell has come from `from` of its place. */
 bool fl_wet_sheet_turn(FlWetSheet *sheet, const FlAffine *from, GError **error);
 
-/** Makes it the sheet of a state: cells are of `wet`. */
-void fl_wet_sheet_restore(FlWetSheet *sheet, FlRect wet, const FlWetCell *cells, FlAffine place);
-
 /** The sheet after some frames in which it only dries. */
 void fl_wet_sheet_dry(FlWetSheet *sheet, float frames);
 
