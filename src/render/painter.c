@@ -382,13 +382,14 @@ bool fl_painter_frame(FlPainter *painter, int frame, GError **error)
     return true;
 }
 
-/* Before the first picture, or that of the lead-in. */
+/* Before the first picture, or that of the lead-in. An engine that has painted is opened anew. */
 static bool restart(FlPainter *painter, GError **error)
 {
+    const bool painted = !painter->paint || painter->follows || painter->picture != NONE;
     painter->next = 0, painter->picture = NONE;
     painter->follows = false;
     g_clear_pointer(&painter->reuse.state, g_bytes_unref);
-    return open_engine(painter, error);
+    return !painted || open_engine(painter, error);
 }
 
 int fl_painter_seek(FlPainter *painter, int frame, GError **error)
