@@ -156,7 +156,7 @@ static void another_style_paints_its_region_alone(void)
 
 static void what_is_kept_is_bounded(void)
 {
-    enum { HELD = 16 * 2 * 2 }; // choices, regions and frames
+    enum { HELD = 4 * 2 * 2 }; // choices, regions and frames
     g_autoptr(Case) test = case_new();
     set(test->film, NULL, "frames", "0-1");
     set(test->film, NULL, "detail", "draft");

@@ -14,7 +14,7 @@ G_BEGIN_DECLS
  *
  * Another "tint" or "paper" only composes the frames again; another "style" of a region only paints
  * that region again; no option of the paint reads the drawing again. Painted pictures stay in
- * memory, as many as 16 films have, and up to 512 MiB, or an eighth of the limit ‘memory’, of
+ * memory, as many as four films have, and up to 512 MiB, or an eighth of the limit ‘memory’, of
  * frames and of drafts each, so that a choice that is taken back shows the earlier pictures at
  * once.
  *

@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-#define KEPT_CHOICES 16 // as many times all pictures of the film are in memory
+#define KEPT_CHOICES 4  // as many times all pictures of the film are in memory
 #define SMALL_PX 500000 // that are painted: up to here a heap for each thread takes little
 
 /* Options that decide paint, but not the drawing. */
