@@ -295,13 +295,6 @@ static void on_closed(SoupWebsocketConnection *page, void *data)
     g_ptr_array_remove_fast(live->pages, page);
 }
 
-static void leave(void *page)
-{
-    g_signal_handlers_disconnect_matched(page, G_SIGNAL_MATCH_FUNC, 0, 0, NULL, on_text, NULL);
-    g_signal_handlers_disconnect_matched(page, G_SIGNAL_MATCH_FUNC, 0, 0, NULL, on_closed, NULL);
-    g_object_unref(page);
-}
-
 /* ---- requests ------------------------------------------------------------------------------- */
 
 static void answer(SoupServerMessage *message, guint status, const char *type, const char *text,
@@ -593,7 +586,7 @@ bool fl_serve(const FlArgs *args, const volatile sig_atomic_t *stop, GError **er
 {
     Live live = {.args = args,
                  .stop = stop,
-                 .pages = g_ptr_array_new_with_free_func(leave),
+                 .pages = g_ptr_array_new_with_free_func(g_object_unref),
                  .messages = g_ptr_array_new_with_free_func(g_free),
                  .loop = g_main_loop_new(NULL, FALSE)};
     const bool served = check_options(args, error) && prepare(&live, error);
