@@ -126,7 +126,7 @@ int fl_drawing_shown(const FlDrawing *drawing, int frame);
 /** A region's anchor in a frame; it depends on no other region. */
 FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame);
 
-/** The mean motion of a region's anchor over the frames up to one, of which the middle ones weigh
+/** The mean motion of a region's anchor over the frames up to one, of which the last ones weigh
  * most; before its first frame a region moves as after it. ground: a region that the paper moves
  * with; -1: the paper rests. loop: frame 0 follows the last. */
 FlDrift fl_drawing_drift(const FlDrawing *drawing, int region, int ground, int frame, bool loop);

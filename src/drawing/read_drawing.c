@@ -68,7 +68,7 @@ FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame)
     return drawing->frame[frame].anchor[region];
 }
 
-#define DRIFT_FRAMES 16
+#define DRIFT_FRAMES 12
 
 /* The way of a region's anchor from a frame to another; 0 without it. */
 static FlPoint way_between(const FlDrawing *drawing, int region, int from, int to)
@@ -85,12 +85,12 @@ FlDrift fl_drawing_drift(const FlDrawing *drawing, int region, int ground, int f
 {
     const int n = fl_drawing_frames(drawing);
     const int first = MIN(fl_drawing_region(drawing, region)->first_frame, MAX(n - 2, 0));
-    const float all = DRIFT_FRAMES * (DRIFT_FRAMES + 1) * (DRIFT_FRAMES + 2) / 6.f;
+    const float all = DRIFT_FRAMES * (DRIFT_FRAMES + 1) / 2.f;
     FlDrift drift = {0};
     for (int k = 0; k < DRIFT_FRAMES; k++) {
         const int before = frame - k - 1;
         const int from = loop ? (before % n + n) % n : CLAMP(before, first, MAX(n - 2, first));
-        const float share = (float)((k + 1) * (DRIFT_FRAMES - k)) / all;
+        const float share = (float)(DRIFT_FRAMES - k) / all;
         const FlPoint way = way_between(drawing, region, from, (from + 1) % n);
         const FlPoint paper = way_between(drawing, ground, from, (from + 1) % n);
         const float x = (float)(way.x - paper.x), y = (float)(way.y - paper.y);
