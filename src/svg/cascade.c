@@ -16,8 +16,7 @@ typedef struct Style {
     GHashTable *variables; // custom properties that are set here, name -> value; may be NULL
     GHashTable *own;       // names of those that children do not inherit; may be NULL
     FlCssUnits units;
-    const char *colour;   // computed, of `color`
-    const xmlNode *shows; // by <use>; else NULL
+    const char *colour; // computed, of `color`
 } Style;
 
 typedef struct Cascade {
@@ -31,11 +30,8 @@ typedef struct Cascade {
     GHashTable *said; // texts of the warnings that were given
     double seconds;   // the moment that is shown; NAN: animations are left out
     FlFilmLength *length;
-    GHashTable *ids;   // id -> xmlNode, the first of that id
-    GHashTable *needs; // xmlNode that <use> shows -> whether it has variables
-    GHashTable *shown; // xmlNode -> a copy as it was written, of what <use> shows with variables
-    int n_copied;      // elements
-    int depth;         // of <use> that shows <use>
+    GHashTable *ids; // id -> xmlNode, the first of that id
+    int n_copied;    // elements
     int n_clips;
 } Cascade;
 
@@ -449,100 +445,75 @@ static bool animate(Cascade *c, const xmlNode *node, GArray *values, const Style
 
 /* ---- what <use> shows ------------------------------------------------------------------------ */
 
-/* Variables that a <use> inherits count for what it shows. librsvg does not know them, so that each
- * <use> of an element with var() gets a copy of its own. */
+/* Each <use> gets a copy of what it shows before any value is written, so that the copy inherits
+ * from the <use>, variables included. In clip paths, which have no groups, librsvg resolves it. */
 
-static bool has_variable(const GArray *declarations)
+/** The elements that the <use> around show, the innermost first. */
+typedef struct Shown {
+    const struct Shown *around;
+    const xmlNode *node;
+} Shown;
+
+/** Points an element and those in it to where rules are matched, and puts their ids aside, which
+ * stay unique. Returns: how many they are. */
+static int link_copy(xmlNode *copy, const xmlNode *from)
 {
-    for (guint i = 0; i < declarations->len; i++)
-        if (strstr(g_array_index(declarations, FlCssDeclaration, i).value, "var("))
-            return true;
-    return false;
-}
-
-static bool needs_variables(Cascade *c, const xmlNode *node);
-
-/** Returns: true if what a <use> shows has a value with var(). */
-static bool target_needs_variables(Cascade *c, const xmlNode *target)
-{
-    void *known;
-    if (g_hash_table_lookup_extended(c->needs, target, NULL, &known))
-        return known != NULL;
-    if (c->depth >= fl_limit(FL_LIMIT_DEPTH))
-        return false;
-    g_hash_table_insert(c->needs, (gpointer)target, NULL); // until it is known: it may show itself
-    c->depth++;
-    const bool found = needs_variables(c, target);
-    c->depth--;
-    g_hash_table_insert(c->needs, (gpointer)target, GINT_TO_POINTER(found));
-    return found;
-}
-
-/** Returns: true if an element, or one in it or shown by it, has a value with var(). */
-static bool needs_variables(Cascade *c, const xmlNode *node)
-{
-    g_autoptr(GArray) matched = match(c, node);
-    const xmlNode *target = fl_is(node, "use") ? fl_shown_by_use(node, c->ids) : NULL;
-    bool found = target && target_needs_variables(c, target);
-    for (guint i = 0; i < matched->len && !found; i++)
-        found = has_variable(g_array_index(matched, const FlCssRule *, i)->declarations);
-    for (const xmlAttr *a = node->properties; a && !found; a = a->next)
-        found = a->children && a->children->content &&
-                strstr((const char *)a->children->content, "var(");
-    for (const xmlNode *child = node->children; child && !found; child = child->next)
-        found = child->type == XML_ELEMENT_NODE && needs_variables(c, child);
-    return found;
-}
-
-/** A copy whose elements point to those where rules are matched. */
-static xmlNode *copy_linked(const xmlNode *node)
-{
-    xmlNode *copy = xmlDocCopyNode((xmlNode *)node, node->doc, 1);
-    const xmlNode *from = node;
-    for (xmlNode *to = copy; to;) {
-        to->_private = from->_private ? from->_private : (xmlNode *)from;
-        const bool down = to->children && to->type == XML_ELEMENT_NODE;
-        while (!down && to != copy && !to->next)
-            to = to->parent, from = from->parent;
-        if (!down && to == copy)
-            break;
-        from = down ? from->children : from->next;
-        to = down ? to->children : to->next;
+    int n = 1;
+    g_autoptr(xmlChar) id = fl_attribute(copy, "id");
+    copy->_private = from->_private ? from->_private : (xmlNode *)from;
+    if (id) {
+        fl_set_attribute(copy, "id", NULL);
+        fl_set_attribute(copy, FL_COPIED_ID, (const char *)id);
     }
-    return copy;
+    const xmlNode *child = xmlFirstElementChild((xmlNode *)from);
+    FL_EACH_ELEMENT (to, copy) {
+        n += link_copy(to, child);
+        child = xmlNextElementSibling((xmlNode *)child);
+    }
+    return n;
 }
 
-static void free_copy(void *node)
+/** What a <use> shows and is to be copied; NULL: nothing, or fl_document_normalise() tells why. */
+static const xmlNode *target_of(const Cascade *c, const xmlNode *use, const Shown *around,
+                                int depth)
 {
-    xmlFreeNode(node);
+    const xmlNode *target = fl_use_is_drawn(use) ? fl_shown_by_use(use, c->ids) : NULL;
+    for (const Shown *s = around; s && target; s = s->around)
+        target = s->node == target ? NULL : target;
+    for (const xmlNode *at = use; at && target; at = at->parent)
+        target = at == target ? NULL : target;
+    return c->n_copied > fl_limit(FL_LIMIT_ELEMENTS) || depth > fl_limit(FL_LIMIT_DEPTH) ? NULL
+                                                                                         : target;
 }
 
-/** Copies what is shown with variables, before it is rewritten. */
-static void keep_shown(Cascade *c, const xmlNode *node)
+/** The copy of what it shows in a <use>; NULL: it has none yet. */
+static xmlNode *copy_in(xmlNode *use, const xmlNode *target)
 {
-    const xmlNode *target = fl_is(node, "use") ? fl_shown_by_use(node, c->ids) : NULL;
-    if (target && !g_hash_table_contains(c->shown, target) && target_needs_variables(c, target))
-        g_hash_table_insert(c->shown, (gpointer)target, copy_linked(target));
-    FL_EACH_ELEMENT (child, node)
-        keep_shown(c, child);
+    xmlNode *copy = target ? xmlLastElementChild(use) : NULL;
+    return copy && copy->_private == target ? copy : NULL;
 }
 
-/** Makes a <use> a group with a copy of what it shows, if that has variables. */
-static void show_with_variables(Cascade *c, xmlNode *use, Style *style)
+static void copy_shown(Cascade *c, xmlNode *node, const Shown *around, int depth)
 {
-    const xmlNode *target = fl_is(use, "use") ? fl_shown_by_use(use, c->ids) : NULL;
-    const xmlNode *kept = target ? g_hash_table_lookup(c->shown, target) : NULL;
-    int depth = 0;
-    for (const Style *s = style->around; s && kept; s = s->around)
-        if (s->shows == target || ++depth > fl_limit(FL_LIMIT_DEPTH))
-            kept = NULL; // a cycle, or too deep: fl_document_normalise() tells
-    for (const xmlNode *at = use; at && kept; at = at->parent)
-        if (at == target)
-            kept = NULL;
-    if (!kept || c->n_copied > fl_limit(FL_LIMIT_ELEMENTS))
-        return;
-    c->n_copied += fl_use_show(use, copy_linked(kept));
-    style->shows = target;
+    FL_EACH_ELEMENT (child, node) {
+        const xmlNode *target = fl_is(child, "use") ? target_of(c, child, around, depth) : NULL;
+        const Shown inner = {around, target};
+        if (target && !copy_in(child, target)) {
+            xmlNode *copy = xmlDocCopyNode((xmlNode *)target, c->doc, 1);
+            c->n_copied += link_copy(copy, target);
+            xmlAddChild(child, copy);
+        }
+        if (!fl_is(child, "clipPath"))
+            copy_shown(c, child, target ? &inner : around, depth + 1);
+    }
+}
+
+/** Makes a <use> with a copy of what it shows a group. */
+static void show_copy(const Cascade *c, xmlNode *use)
+{
+    xmlNode *copy = fl_is(use, "use") ? copy_in(use, fl_shown_by_use(use, c->ids)) : NULL;
+    if (copy)
+        fl_use_show(use, copy);
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
@@ -663,7 +634,7 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     if (values->len > 0 || own->len > 0)
         fl_set_attribute(node, "style", text->str);
     g_string_free(text, TRUE);
-    show_with_variables(c, node, &style);
+    show_copy(c, node);
     if (!fl_is(node, "foreignObject"))
         FL_EACH_ELEMENT (child, node)
             visit(c, child, &style);
@@ -721,8 +692,6 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
     g_autoptr(GHashTable) rules = index_rules(fl_css_sheet_rules(sheet));
     g_autoptr(GHashTable) said = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
-    g_autoptr(GHashTable) needs = g_hash_table_new(NULL, NULL);
-    g_autoptr(GHashTable) shown = g_hash_table_new_full(NULL, NULL, NULL, free_copy);
     Cascade c = {.doc = doc,
                  .path = path,
                  .number = number,
@@ -732,9 +701,7 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
                  .said = said,
                  .seconds = seconds,
                  .length = length,
-                 .ids = ids,
-                 .needs = needs,
-                 .shown = shown};
+                 .ids = ids};
     const GArray *initial = fl_css_sheet_initial(sheet);
     for (guint i = 0; i < initial->len; i++) {
         const FlCssDeclaration *d = &g_array_index(initial, FlCssDeclaration, i);
@@ -743,7 +710,7 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
         g_hash_table_insert(page.variables, (gpointer)d->name, g_strdup(d->value));
     }
     page.own = fl_css_sheet_own(sheet);
-    keep_shown(&c, root);
+    copy_shown(&c, root, NULL, 0);
     visit(&c, root, &page);
     fl_css_keep_strokes(root, &page.units);
     if (c.work.steps > FL_SELECTOR_STEPS)

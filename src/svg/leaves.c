@@ -29,12 +29,12 @@ static void append(GString *list, const char *item)
 
 static xmlChar *authored_id(const xmlNode *node)
 {
-    xmlChar *id = fl_attribute(node, "id");
-    if (!id)
-        id = fl_attribute(node, FL_COPIED_ID);
-    if (!id || !g_str_has_prefix((const char *)id, FL_GROUP_ID))
-        return id;
-    xmlFree(id);
+    static const char *const names[] = {"id", FL_COPIED_ID};
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
+        g_autoptr(xmlChar) id = fl_attribute(node, names[i]);
+        if (id && !g_str_has_prefix((const char *)id, FL_GROUP_ID))
+            return g_steal_pointer(&id);
+    }
     return NULL;
 }
 

@@ -12,6 +12,12 @@
 
 #define MOST_CLIPS 16 // of clip paths that clip each other
 
+typedef struct Mend {
+    GHashTable *ids; // id -> xmlNode, the first of that id
+    int n_made;      // names
+    int n_copied;    // elements that <use> show
+} Mend;
+
 /* ---- drop shadows ---------------------------------------------------------------------------- */
 
 /** The name of a filter step's input, to be freed; names the step before it if that has no name. */
@@ -101,27 +107,27 @@ static void turn_blur(xmlNode *step, const FlAffine *m)
 
 /** librsvg turns the deviations of a blur across and down like a way: at 45 degrees it blurs in one
  * direction only. What is turned gets a filter of its own, whose blurs come out round. */
-static void mend_blur(xmlNode *node, GHashTable *ids, int *n_made)
+static void mend_blur(Mend *m, xmlNode *node)
 {
-    xmlNode *filter = referred_by(node, "filter", "filter", ids);
-    FlAffine m = FL_AFFINE_NONE;
+    xmlNode *filter = referred_by(node, "filter", "filter", m->ids);
+    FlAffine map = FL_AFFINE_NONE;
     for (const xmlNode *at = node; filter && at && at->type == XML_ELEMENT_NODE; at = at->parent) {
         const FlAffine own = fl_affine_of(at);
-        m = fl_affine_multiply(&own, &m);
+        map = fl_affine_multiply(&own, &map);
     }
-    const bool upright = (m.xy == 0 && m.yx == 0) || (m.xx == 0 && m.yy == 0);
+    const bool upright = (map.xy == 0 && map.yx == 0) || (map.xx == 0 && map.yy == 0);
     g_autofree char *units = filter ? fl_property(filter, "primitiveUnits") : NULL;
-    if (!filter || upright || m.xx * m.yy == m.xy * m.yx ||
+    if (!filter || upright || map.xx * map.yy == map.xy * map.yx ||
         (units && strcmp(units, "objectBoundingBox") == 0))
         return;
-    g_autofree char *id = g_strdup_printf("fl-turned-%d", (*n_made)++);
+    g_autofree char *id = g_strdup_printf("fl-turned-%d", m->n_made++);
     g_autofree char *declaration = g_strdup_printf("filter:url(#%s)", id);
     xmlNode *turned = xmlAddNextSibling(filter, xmlDocCopyNode(filter, filter->doc, 1));
     fl_set_attribute(turned, "id", id);
     fl_declare(node, declaration);
     for (xmlNode *step = turned->children; step; step = step->next)
         if (fl_is(step, "feGaussianBlur") || fl_is(step, "feDropShadow"))
-            turn_blur(step, &m);
+            turn_blur(step, &map);
 }
 
 /* ---- numbers of filters ---------------------------------------------------------------------- */
@@ -306,27 +312,6 @@ static void mend_baseline(xmlNode *text)
         fl_declare(text, shift);
 }
 
-/* ---- symbols and drawings -------------------------------------------------------------------- */
-
-/** librsvg cuts a <symbol> off at its viewBox, a browser at the place where <use> shows it, and it
- * leaves the size out that <use> gives to an <svg>: both are copied to that place. A cycle is left
- * for fl_document_normalise() to tell. */
-static void mend_use(xmlNode *use, GHashTable *ids, int *n_copied)
-{
-    const xmlNode *target = fl_shown_by_use(use, ids);
-    if (!target || !(fl_is(target, "symbol") || fl_is(target, "svg")) ||
-        *n_copied > fl_limit(FL_LIMIT_ELEMENTS))
-        return;
-    g_autoptr(xmlChar) id = fl_attribute(target, "id");
-    int depth = 0;
-    for (const xmlNode *at = use; at && at->type == XML_ELEMENT_NODE; at = at->parent) {
-        g_autoptr(xmlChar) copied = fl_attribute(at, FL_COPIED_ID);
-        if (at == target || xmlStrEqual(copied, id) || ++depth > fl_limit(FL_LIMIT_DEPTH))
-            return;
-    }
-    *n_copied += fl_use_show(use, xmlDocCopyNode((xmlNode *)target, use->doc, 1));
-}
-
 /* ---- words that librsvg does not know -------------------------------------------------------- */
 
 static void mend_words(xmlNode *node)
@@ -337,9 +322,6 @@ static void mend_words(xmlNode *node)
         if (text && g_ascii_isalpha(*text)) // "center", for which librsvg drops all attributes
             fl_set_attribute(node, places[i], NULL);
     }
-    g_autofree char *overflow = fl_is(node, "symbol") ? fl_property(node, "overflow") : NULL;
-    if (fl_is(node, "symbol") && !overflow)
-        fl_set_attribute(node, "overflow", "hidden");   // a browser's own style sheet says so
     if (fl_is(node, "mask") && fl_is_set(node, "mask")) // which no browser applies
         fl_declare(node, "mask:none");
     g_autofree char *display = fl_property(node, "display");
@@ -353,14 +335,15 @@ static void mend_words(xmlNode *node)
 
 /* ---- the document ---------------------------------------------------------------------------- */
 
-static void mend(xmlNode *node, GHashTable *ids, int *n_made, int *n_copied)
+static void mend(Mend *m, xmlNode *node)
 {
     static const char *const gradients[] = {"linearGradient", "radialGradient", NULL};
     static const char *const with_points[] = {"polygon", "polyline", NULL};
+    m->n_copied += node->_private != NULL;
     if (node->ns && g_str_has_prefix((const char *)node->name, "fe"))
         mend_numbers(node);
     if (fl_is(node, "feDropShadow"))
-        mend_shadow(node, (*n_made)++);
+        mend_shadow(node, m->n_made++);
     else if (fl_is_one_of(node, gradients))
         mend_gradient(node);
     else if (fl_is_one_of(node, with_points))
@@ -369,24 +352,22 @@ static void mend(xmlNode *node, GHashTable *ids, int *n_made, int *n_copied)
         mend_baseline(node);
     else if (fl_is(node, "path"))
         mend_caps(node);
-    else if (fl_is(node, "use"))
-        mend_use(node, ids, n_copied);
     for (xmlNode *child = node->children, *next; child; child = next) {
         next = child->next;
         if (child->type != XML_ELEMENT_NODE)
             continue;
         mend_words(child);
-        mend(child, ids, n_made, n_copied);
-        mend_blur(child, ids, n_made);
+        mend(m, child);
+        mend_blur(m, child);
         if (!fl_is(child, "clipPath") && !fl_is(node, "clipPath"))
-            mend_clip(child, ids);
+            mend_clip(child, m->ids);
     }
 }
 
 bool fl_document_mend(xmlDoc *doc, const char *path, GError **error)
 {
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
-    int n_made = 0, n_copied = 0;
-    mend(xmlDocGetRootElement(doc), ids, &n_made, &n_copied);
-    return fl_limit_check(FL_LIMIT_ELEMENTS, n_copied, path, error);
+    Mend m = {.ids = ids};
+    mend(&m, xmlDocGetRootElement(doc));
+    return fl_limit_check(FL_LIMIT_ELEMENTS, m.n_copied, path, error);
 }

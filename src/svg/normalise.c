@@ -3,19 +3,12 @@
 #include "base/limits.h"
 #include <string.h>
 
-/** Referenced elements, from the outermost <use> inwards; one that occurs twice is a cycle. */
-typedef struct Chain {
-    const struct Chain *outer;
-    const xmlNode *shown;
-} Chain;
-
 typedef struct Work {
     const char *const *whole;
     const char *path;
     int number;
     FlWarnings *warnings;
     GHashTable *ids; // id -> xmlNode, the first of that id
-    int n_copied;
 } Work;
 
 bool fl_is_undrawn(const xmlNode *node)
@@ -59,19 +52,6 @@ bool fl_is_whole(const xmlNode *node, const char *const *whole)
         return false;
     g_autoptr(xmlChar) id = fl_attribute(node, "id");
     return id && g_strv_contains(whole, (const char *)id);
-}
-
-/** Removes href or xlink:href, whatever the prefix; its value, to be freed with xmlFree(). */
-static xmlChar *take_reference(xmlNode *node)
-{
-    xmlAttr *attribute = xmlHasNsProp(node, (const xmlChar *)"href", NULL);
-    if (!attribute)
-        attribute = xmlHasNsProp(node, (const xmlChar *)"href",
-                                 (const xmlChar *)"http://www.w3.org/1999/xlink");
-    xmlChar *href = attribute ? xmlNodeListGetString(node->doc, attribute->children, 1) : NULL;
-    if (href && href[0] == '#')
-        xmlRemoveProp(attribute);
-    return href;
 }
 
 /** Returns: true if one of the languages is the user's; without a locale it is English. */
@@ -133,20 +113,6 @@ static void resolve_switch(xmlNode *node)
     xmlNodeSetName(node, (const xmlChar *)"g");
 }
 
-/** Ids must stay unique: a copy has FL_COPIED_ID instead. Returns: the number of elements. */
-static int put_ids_aside(xmlNode *node)
-{
-    int n = 1;
-    g_autoptr(xmlChar) id = fl_attribute(node, "id");
-    if (id) {
-        fl_set_attribute(node, "id", NULL);
-        fl_set_attribute(node, FL_COPIED_ID, (const char *)id);
-    }
-    FL_EACH_ELEMENT (child, node)
-        n += put_ids_aside(child);
-    return n;
-}
-
 /** Removes an attribute. Returns: its value, to be freed with xmlFree(), or NULL. */
 static xmlChar *take(xmlNode *node, const char *name)
 {
@@ -156,9 +122,15 @@ static xmlChar *take(xmlNode *node, const char *name)
     return value;
 }
 
-static bool is_zero(const xmlChar *length)
+static bool is_zero(const xmlNode *node, const char *name)
 {
+    g_autoptr(xmlChar) length = fl_attribute(node, name);
     return length && g_ascii_strtod((const char *)length, NULL) == 0;
+}
+
+bool fl_use_is_drawn(const xmlNode *use)
+{
+    return !is_zero(use, "width") && !is_zero(use, "height");
 }
 
 /** The size that <use> gives, if any, or that of the symbol itself. */
@@ -171,8 +143,11 @@ static void give_size(xmlNode *shown, const char *name, const xmlChar *size, boo
 static void show_copy(xmlNode *use, xmlNode *shown, const xmlChar *width, const xmlChar *height)
 {
     const bool symbol = fl_is(shown, "symbol");
+    g_autofree char *overflow = symbol ? fl_property(shown, "overflow") : NULL;
     if (symbol)
         xmlNodeSetName(shown, (const xmlChar *)"svg");
+    if (symbol && !overflow)
+        fl_set_attribute(shown, "overflow", "hidden"); // a browser's own style sheet says so
     if (symbol || fl_is(shown, "svg")) {
         give_size(shown, "width", width, symbol);
         give_size(shown, "height", height, symbol);
@@ -180,12 +155,10 @@ static void show_copy(xmlNode *use, xmlNode *shown, const xmlChar *width, const 
     xmlAddChild(use, shown);
 }
 
-static bool normalise(Work *work, xmlNode *node, const Chain *chain, GError **error);
-
 /** Moves by x and y, which may have units, by means of a nested <svg> of the same size. */
 static xmlNode *place(xmlNode *use, const xmlChar *x, const xmlChar *y)
 {
-    if ((!x || is_zero(x)) && (!y || is_zero(y)))
+    if (!x && !y)
         return use;
     xmlNode *svg = xmlNewChild(use, use->ns, (const xmlChar *)"svg", NULL);
     fl_set_attribute(svg, "x", x ? (const char *)x : "0");
@@ -194,50 +167,30 @@ static xmlNode *place(xmlNode *use, const xmlChar *x, const xmlChar *y)
     return svg;
 }
 
-int fl_use_show(xmlNode *use, xmlNode *shown)
+void fl_use_show(xmlNode *use, xmlNode *shown)
 {
+    for (int i = 0; i < 2; i++)
+        if (is_zero(use, i ? "y" : "x"))
+            fl_set_attribute(use, i ? "y" : "x", NULL);
     g_autoptr(xmlChar) x = take(use, "x"), y = take(use, "y");
     g_autoptr(xmlChar) width = take(use, "width"), height = take(use, "height");
-    g_autoptr(xmlChar) reference = take_reference(use);
-    const int n = put_ids_aside(shown);
     xmlNodeSetName(use, (const xmlChar *)"g");
+    xmlUnlinkNode(shown);
     show_copy(place(use, x, y), shown, width, height);
-    return n;
 }
 
-static bool is_cycle(const xmlNode *use, const xmlNode *target, const Chain *chain)
+/** Of <use>, those are left that refer to another file, and those that show nothing. */
+static void resolve_use(const Work *work, xmlNode *use)
 {
-    for (const Chain *c = chain; c; c = c->outer)
-        if (c->shown == target)
-            return true;
-    while (use && use != target)
-        use = use->parent;
-    return use != NULL;
-}
-
-static bool resolve_use(Work *work, xmlNode *use, const Chain *chain, GError **error)
-{
-    g_autoptr(xmlChar) href = take_reference(use);
-    if (href && href[0] != '#')
-        return true; // another file, which librsvg draws as one leaf
-    g_autoptr(xmlChar) width = fl_attribute(use, "width"), height = fl_attribute(use, "height");
-    xmlNode *target = href ? g_hash_table_lookup(work->ids, href + 1) : NULL;
+    g_autofree char *href = fl_href(use);
     g_autoptr(xmlChar) id = fl_attribute(use, "id");
-    if (target && is_cycle(use, target, chain)) {
-        const bool made = id && g_str_has_prefix((const char *)id, FL_GROUP_ID);
+    if (href && href[0] != '#')
+        return; // librsvg draws it as one leaf
+    const bool made = id && g_str_has_prefix((const char *)id, FL_GROUP_ID);
+    if (href && g_hash_table_contains(work->ids, href + 1) && fl_use_is_drawn(use))
         fl_warnings_add(work->warnings, work->path, work->number, made ? NULL : (const char *)id,
                         "<use> of “%s” shows itself and is left out", href);
-        target = NULL;
-    }
-    if (!target || is_zero(width) || is_zero(height)) {
-        xmlNodeSetName(use, (const xmlChar *)"g");
-        return true; // it is invisible
-    }
-    work->n_copied += fl_use_show(use, xmlDocCopyNode(target, use->doc, 1));
-    if (!fl_limit_check(FL_LIMIT_ELEMENTS, work->n_copied, work->path, error))
-        return false;
-    const Chain inner = {chain, target};
-    return normalise(work, use, &inner, error);
+    xmlNodeSetName(use, (const xmlChar *)"g");
 }
 
 static bool is_shallow(const Work *work, const xmlNode *node, GError **error)
@@ -248,7 +201,7 @@ static bool is_shallow(const Work *work, const xmlNode *node, GError **error)
     return fl_limit_check(FL_LIMIT_DEPTH, depth, work->path, error);
 }
 
-static bool normalise(Work *work, xmlNode *node, const Chain *chain, GError **error)
+static bool normalise(const Work *work, xmlNode *node, GError **error)
 {
     if (!is_shallow(work, node, error))
         return false;
@@ -259,9 +212,9 @@ static bool normalise(Work *work, xmlNode *node, const Chain *chain, GError **er
             continue;
         if (fl_is(child, "switch"))
             resolve_switch(child);
-        const bool good = fl_is(child, "use") ? resolve_use(work, child, chain, error)
-                                              : normalise(work, child, chain, error);
-        if (!good)
+        if (fl_is(child, "use"))
+            resolve_use(work, child);
+        else if (!normalise(work, child, error))
             return false;
     }
     return true;
@@ -271,6 +224,6 @@ bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *pa
                            FlWarnings *warnings, GError **error)
 {
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
-    Work work = {whole, path, number, warnings, ids, 0};
-    return normalise(&work, xmlDocGetRootElement(doc), NULL, error);
+    const Work work = {whole, path, number, warnings, ids};
+    return normalise(&work, xmlDocGetRootElement(doc), error);
 }

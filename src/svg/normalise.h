@@ -20,20 +20,21 @@ int fl_document_name_groups(xmlDoc *doc);
 bool fl_is_whole(const xmlNode *node, const char *const *whole);
 
 /**
- * Makes each <switch> a <g> with its first eligible child, and each <use> a <g> with a deep copy of
- * what it shows (a <symbol> becomes a nested <svg>). A cycle of <use> is not drawn, with a warning.
- * Elements of `whole`, see fl_is_whole(), stay unchanged.
+ * Makes each <switch> a <g> with its first eligible child, and each <use> that is left a <g>
+ * without content: a cycle is not drawn, with a warning. Elements of `whole`, see fl_is_whole(),
+ * stay unchanged.
  *
- * Returns: false with FL_ERROR_LIMIT if the copies are too many or too deep.
+ * Returns: false with FL_ERROR_LIMIT if elements lie too deep.
  */
 bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *path, int number,
                            FlWarnings *warnings, GError **error);
 
-/**
- * Makes a <use> a <g> that contains `shown`, a deep copy of the element that it refers to; the
- * document then owns the copy. Returns: the number of elements of the copy.
- */
-int fl_use_show(xmlNode *use, xmlNode *shown);
+/** Makes a <use> a <g> around its child `shown`, a copy of the element that it refers to, of which
+ * a <symbol> becomes a nested <svg>. */
+void fl_use_show(xmlNode *use, xmlNode *shown);
+
+/** Returns: false if a side of 0 hides what a <use> shows. */
+bool fl_use_is_drawn(const xmlNode *use);
 
 /** Returns: true if a <switch> may show this child. */
 bool fl_is_eligible(const xmlNode *node);

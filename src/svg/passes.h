@@ -26,8 +26,8 @@ bool fl_images_check(xmlDoc *doc, const char *path, int number, GPtrArray *files
 
 /**
  * Rewrites what librsvg leaves out and a browser draws: <feDropShadow>, clips of clip paths,
- * gradients of no length, lists of points that end with half a pair. What <use> shows of a <symbol>
- * is cut off at its place, languages in a <switch> are resolved, and a <mask> has no mask.
+ * gradients of no length, lists of points that break. Languages in a <switch> are resolved, and a
+ * <mask> has no mask.
  *
  * Returns: false with FL_ERROR_LIMIT if the copies are too many.
  */
