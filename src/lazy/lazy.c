@@ -58,7 +58,7 @@ static float sigma_of(const FlExemplar *exemplar, const FlParams *params)
 
 float fl_lazy_reach(const FlExemplar *exemplar, const FlParams *params)
 {
-    return OUTER * sigma_of(exemplar, params) + 2 * FL_PATCH_RADIUS; // a patch's corner
+    return OUTER * sigma_of(exemplar, params) + 1;
 }
 
 FlLazy *fl_lazy_new(const FlExemplar *exemplar, const FlParams *params, FlRecordingEnd end,
@@ -255,14 +255,16 @@ static bool start_field(FlLazy *lazy, int l, uint64_t key, GError **error)
     return true;
 }
 
-/* Fills pixels without votes with bare paper. */
-static void fill_paper(const FlExemplar *exemplar, int pixels, float *rgba)
+/* Clears a row where there is no fluid: patches of the fluid's edge, which reach out to there, may
+ * bring specks. */
+static void clear_outside(const FlExemplar *exemplar, const FlNnf *nnf, int y, float *rgba)
 {
-    for (int p = 0; p < pixels; p++) {
-        for (int c = 0; c < 3; c++)
-            rgba[4 * p + c] = exemplar->cut_out ? 0 : exemplar->paper[c] / 255.0f;
-        rgba[4 * p + 3] = 0;
-    }
+    for (int x = 0; x < nnf->width; x++)
+        if (nnf->match[y * nnf->width + x].frame == FL_NO_MATCH) {
+            for (int c = 0; c < 3; c++)
+                rgba[4 * x + c] = exemplar->cut_out ? 0 : exemplar->paper[c] / 255.0f;
+            rgba[4 * x + 3] = 0;
+        }
 }
 
 /*
@@ -308,11 +310,11 @@ static void vote(const FlLazy *lazy, int l, const FlFluidPlanes *past, uint16_t 
         g_autofree float *strip = g_new(float, 4 * (size_t)width * FL_VOTE_ROWS);
 #pragma omp for schedule(dynamic, 1)
         for (int first = 0; first < height; first += FL_VOTE_ROWS) {
-            fill_paper(lazy->exemplar, width * FL_VOTE_ROWS, strip);
             fl_vote_rows(&level->nnf, &lazy->source.level[l].voted, &lazy->kernels,
                          lazy->params->vote_sharpness, 4, first, strip);
             for (int y = first; y < MIN(first + FL_VOTE_ROWS, height); y++) {
                 float *rgba = strip + 4 * (size_t)width * (size_t)(y - first);
+                clear_outside(lazy->exemplar, &level->nnf, y, rgba);
                 if (past && past->plane[FL_FLUID_PLANE_WEIGHT])
                     start_from_past(past, y, rgba);
                 take_row(level, rgba, y, output);
