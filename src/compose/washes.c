@@ -191,7 +191,7 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
     }
     find_box(field.wash, input, around);
     field.size = size_of(input, field.wash->painted->region);
-    field.wash->brush_px = fl_clamp(.3f * field.size, 34, 75);
+    field.wash->brush_px = fl_clamp(.5f * field.size, 34, 85);
     find_across(&field);
     const bool made = fl_field_alloc(&field, error) && read_maps(&field, error);
     if (made) {
