@@ -356,7 +356,7 @@ static void protect(SoupServerMessage *message)
         soup_message_headers_replace(sent, headers[k][0], headers[k][1]);
 }
 
-/* Before the body is read. What gets a status here goes no further. */
+/* Before the body is read. What gets a status here goes no further, and its body is not kept. */
 static void on_headers(SoupServer *server, SoupServerMessage *message, const char *path,
                        GHashTable *query, void *data)
 {
@@ -373,6 +373,8 @@ static void on_headers(SoupServer *server, SoupServerMessage *message, const cha
              soup_message_headers_get_content_length(headers) > (drops ? LONGEST_DROP : 0))
         answer_line(message, SOUP_STATUS_REQUEST_ENTITY_TOO_LARGE,
                     "the files are larger than 256 MiB; give the program their folder");
+    if (soup_server_message_get_status(message) != SOUP_STATUS_NONE)
+        soup_message_body_set_accumulate(soup_server_message_get_request_body(message), FALSE);
 }
 
 static void on_request(SoupServer *server, SoupServerMessage *message, const char *path,
