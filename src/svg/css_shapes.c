@@ -7,14 +7,12 @@
 #include <math.h>
 #include <string.h>
 
-#define MOST_DEPTH 64       // of <use> in <use> and of groups, when boxes are measured
-#define MOST_ELEMENTS 50000 // in a box: a <use> that shows <use> doubles them at each step
+#define MOST_DEPTH 64 // of groups, when boxes are measured
 
 /* ---- boxes ----------------------------------------------------------------------------------- */
 
 typedef struct Bounds {
     double left, top, right, bottom;
-    int n_elements; // seen so far
 } Bounds;
 
 static void add_point(Bounds *b, FlPoint p)
@@ -74,33 +72,27 @@ static double attribute_length(const xmlNode *node, const char *name, const FlCs
 static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *units,
                         const FlAffine *map, int depth);
 
-/** Adds what a group or <use> shows. */
 static void add_children(Bounds *bounds, const xmlNode *node, const FlCssUnits *units,
                          const FlAffine *map, int depth)
 {
-    g_autoptr(GHashTable) ids = fl_is(node, "use") ? fl_document_ids(node->doc) : NULL;
-    const xmlNode *shown = ids ? fl_shown_by_use(node, ids) : NULL;
     const FlAffine place = {1,
                             0,
                             0,
                             1,
                             attribute_length(node, "x", units, units->width),
                             attribute_length(node, "y", units, units->height)};
-    const bool moved = fl_is(node, "use") || fl_is(node, "svg");
-    const FlAffine inner = moved ? fl_affine_multiply(map, &place) : *map;
-    for (const xmlNode *child = shown ? shown : node->children; child;
-         child = shown ? NULL : child->next) {
-        if (child->type != XML_ELEMENT_NODE || (!shown && fl_is_undrawn(child)))
-            continue;
+    const FlAffine inner = fl_is(node, "svg") ? fl_affine_multiply(map, &place) : *map;
+    FL_EACH_ELEMENT (child, node) {
         const FlAffine own = fl_affine_of(child), all = fl_affine_multiply(&inner, &own);
-        add_element(bounds, child, units, &all, depth + 1);
+        if (!fl_is_undrawn(child))
+            add_element(bounds, child, units, &all, depth + 1);
     }
 }
 
 static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *units,
                         const FlAffine *map, int depth)
 {
-    if (depth > MOST_DEPTH || bounds->n_elements++ > MOST_ELEMENTS)
+    if (depth > MOST_DEPTH)
         return;
     g_autoptr(FlOutlines) outlines = outlines_of(node, units);
     for (int i = 0; i < outlines->n_cubics; i++)
@@ -119,7 +111,7 @@ static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *u
 
 bool fl_css_fill_box(const xmlNode *node, const FlCssUnits *units, FlCssBox *box)
 {
-    Bounds b = {INFINITY, INFINITY, -INFINITY, -INFINITY, 0};
+    Bounds b = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     const FlAffine none = FL_AFFINE_NONE;
     add_element(&b, node, units, &none, 0);
     const bool found = b.right >= b.left && b.bottom >= b.top;

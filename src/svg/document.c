@@ -1,5 +1,6 @@
 #include "svg/document.h"
 
+#include "base/error.h"
 #include "base/file.h"
 #include "base/limits.h"
 #include "svg/css_scan.h"
@@ -9,7 +10,6 @@
 #include <libxml/parser.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
 bool fl_is(const xmlNode *node, const char *name)
 {
@@ -165,29 +165,23 @@ static double mebibytes(double bytes)
 /** Unpacks gzip data; replaces *data. */
 static bool gunzip(const char *path, char **data, gsize *bytes, GError **error)
 {
-    z_stream z = {.next_in = (Bytef *)*data, .avail_in = (uInt)*bytes};
+    enum { BLOCK = 65536 };
+    g_autoptr(GConverter) gzip =
+        G_CONVERTER(g_zlib_decompressor_new(G_ZLIB_COMPRESSOR_FORMAT_GZIP));
+    g_autoptr(GInputStream) packed =
+        g_memory_input_stream_new_from_data(g_steal_pointer(data), (gssize)*bytes, g_free);
+    g_autoptr(GInputStream) plain = g_converter_input_stream_new(packed, gzip);
     GByteArray *out = g_byte_array_new();
-    int status = inflateInit2(&z, 15 + 16);
-    while (status == Z_OK && mebibytes(out->len) <= (double)fl_limit(FL_LIMIT_DRAWING)) {
-        guint8 block[65536];
-        z.next_out = block;
-        z.avail_out = sizeof block;
-        status = inflate(&z, Z_NO_FLUSH);
-        g_byte_array_append(out, block, sizeof block - z.avail_out);
-        if (status == Z_OK && z.avail_in == 0 && z.avail_out > 0)
-            status = Z_DATA_ERROR; // cut short
+    gssize n = BLOCK;
+    while (n > 0 && mebibytes(out->len) <= (double)fl_limit(FL_LIMIT_DRAWING)) {
+        g_byte_array_set_size(out, out->len + BLOCK);
+        n = g_input_stream_read(plain, out->data + out->len - BLOCK, BLOCK, NULL, NULL);
+        g_byte_array_set_size(out, out->len - BLOCK + (guint)MAX(n, 0));
     }
-    inflateEnd(&z);
-    if (status != Z_STREAM_END) {
-        if (fl_limit_check(FL_LIMIT_DRAWING, mebibytes(out->len), path, error))
-            g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: damaged gzip data", path);
-        g_byte_array_unref(out);
-        return false;
-    }
-    g_free(*data);
     *bytes = out->len;
     *data = (char *)g_byte_array_free(out, FALSE);
-    return true;
+    return fl_limit_check(FL_LIMIT_DRAWING, mebibytes((double)*bytes), path, error) &&
+           (n == 0 || fl_fail(error, FL_ERROR_INPUT, "%s: damaged gzip data", path));
 }
 
 static bool read_bytes(const char *path, char **data, gsize *bytes, GError **error)

@@ -1,6 +1,5 @@
 #include "svg/passes.h"
 
-#include "base/digest.h"
 #include "svg/document.h"
 #include <fontconfig/fontconfig.h>
 #include <string.h>
@@ -103,18 +102,6 @@ static void add_folders(GPtrArray *files)
         FcStrListDone(folders);
 }
 
-static FlDigest letters_digest(const FcCharSet *letters)
-{
-    FlDigest digest = {0};
-    FcChar32 map[FC_CHARSET_MAP_SIZE], next;
-    for (FcChar32 page = FcCharSetFirstPage(letters, map, &next); page != FC_CHARSET_DONE;
-         page = FcCharSetNextPage(letters, map, &next)) {
-        fl_digest_add(&digest, &page, sizeof page);
-        fl_digest_add(&digest, map, sizeof map);
-    }
-    return digest;
-}
-
 /* The files for these families and letters, found once for all frames that have them; the cache's
  * own. */
 static const GPtrArray *fonts_for(GHashTable *families, const FcCharSet *letters)
@@ -122,9 +109,11 @@ static const GPtrArray *fonts_for(GHashTable *families, const FcCharSet *letters
     static GHashTable *found; // letters and families -> GPtrArray *
     g_autofree const char **names = (const char **)g_hash_table_get_keys_as_array(families, NULL);
     g_autofree char *list = g_strjoinv(",", (char **)names);
-    const FlDigest sum = letters_digest(letters);
-    g_autofree char *key =
-        g_strdup_printf("%" G_GINT64_MODIFIER "x%" G_GINT64_MODIFIER "x %s", sum.a, sum.b, list);
+    FcPattern *pattern = FcPatternBuild(NULL, FC_CHARSET, FcTypeCharSet, letters, NULL);
+    FcChar8 *text = FcNameUnparse(pattern);
+    g_autofree char *key = g_strdup_printf("%s %s", (const char *)text, list);
+    FcStrFree(text);
+    FcPatternDestroy(pattern);
     if (!found)
         found = g_hash_table_new_full(g_str_hash, g_str_equal, g_free,
                                       (GDestroyNotify)g_ptr_array_unref);
