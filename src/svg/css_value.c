@@ -80,6 +80,7 @@ static bool read_sum(const Calc *calc, const char **s, double *value);
 static double unit_factor(const Calc *calc, const char *unit, size_t n)
 {
     const FlCssUnits *u = calc->units;
+    const double inch = u->dpi > 0 ? u->dpi : 96;
     const struct {
         const char *name;
         double factor;
@@ -97,12 +98,12 @@ static double unit_factor(const Calc *calc, const char *unit, size_t n)
         {"vb", u->page_height / 100},
         {"vmin", MIN(u->page_width, u->page_height) / 100},
         {"vmax", MAX(u->page_width, u->page_height) / 100},
-        {"in", 96},
-        {"cm", 96 / 2.54},
-        {"mm", 96 / 25.4},
-        {"q", 96 / 101.6},
-        {"pt", 96.0 / 72},
-        {"pc", 16},
+        {"in", inch},
+        {"cm", inch / 2.54},
+        {"mm", inch / 25.4},
+        {"q", inch / 101.6},
+        {"pt", inch / 72},
+        {"pc", inch / 6},
         {"deg", 1},
         {"rad", 180 / G_PI},
         {"grad", 0.9},

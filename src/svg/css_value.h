@@ -9,6 +9,7 @@ typedef struct FlCssUnits {
     double width, height; // of the viewport, in user units: 100 %
     double font_size, root_font_size;
     double page_width, page_height; // of vw and vh
+    double dpi;                     // px per inch; 0: 96
 } FlCssUnits;
 
 /** Finds the value of a custom property; NULL: it is not set. */

@@ -5,39 +5,29 @@
 #include <math.h>
 #include <string.h>
 
-/** A length in px; `whole` is what 100% is. */
+/** A length in px; `whole` is what 100% is. The sizes of fonts are not known here, nor the
+ * window's.
+ */
 static bool length_of(const FlInheritance *inheritance, const char *text, double whole, double *px)
 {
-    static const struct {
-        const char *name;
-        double inches;
-    } units[] = {{"in", 1}, {"cm", 1 / 2.54}, {"mm", 1 / 25.4}, {"pt", 1 / 72.0}, {"pc", 1 / 6.0}};
-    char *end;
-    const double v = g_ascii_strtod(text, &end);
-    if (end == text || !isfinite(v))
-        return false;
-    *px = v;
-    if (*end == '%')
-        *px = v * whole / 100;
-    else if (g_ascii_isalpha(*end) && strncmp(end, "px", 2) != 0) {
-        for (size_t k = 0; k < G_N_ELEMENTS(units); k++)
-            if (strncmp(end, units[k].name, 2) == 0) {
-                *px = v * units[k].inches * inheritance->dpi;
-                return true;
-            }
-        return false; // em and the like
-    }
-    return true;
+    const FlCssUnits units = {.font_size = NAN,
+                              .root_font_size = NAN,
+                              .page_width = NAN,
+                              .page_height = NAN,
+                              .dpi = inheritance->dpi};
+    return fl_css_number(text, &units, whole, px);
 }
 
 double fl_length_in(const FlInheritance *inheritance, const xmlNode *node, const char *name,
                     double whole, double initial, bool *broken)
 {
     g_autofree char *text = fl_property(node, name);
-    double px = initial;
-    if (text && strcmp(text, "auto") != 0 && !length_of(inheritance, text, whole, &px))
-        *broken = true;
-    return px;
+    double px;
+    if (!text || strcmp(text, "auto") == 0)
+        return initial;
+    const bool read = length_of(inheritance, text, whole, &px);
+    *broken |= !read;
+    return read ? px : initial;
 }
 
 /** Maps a viewBox into a viewport of width x height, as preserveAspectRatio says. */

@@ -283,9 +283,8 @@ static bool add_flat(const Stage *stage, int i, const Target *target, GError **e
             if (in[x])
                 out[x] = fl_over(solid[in[x]], out[x]);
     }
-    const bool added = !target->by_hand || add_by_hand(stage, i, solid, target, error);
     fl_surface_wipe(stage->coverage, box);
-    return added;
+    return true;
 }
 
 static bool draw_flat(const Stage *stage, const Draw *draw, const Target *target, GError **error)
@@ -296,9 +295,9 @@ static bool draw_flat(const Stage *stage, const Draw *draw, const Target *target
     return true;
 }
 
-/** Adds what a hand leaves of the steps of a picture, each drawn by itself once more. */
-static bool add_picture_by_hand(const Stage *stage, const Draw *draw, const Target *target,
-                                GError **error)
+/** Adds what a hand leaves of the steps of a draw, each drawn by itself once more. */
+static bool add_steps_by_hand(const Stage *stage, const Draw *draw, const Target *target,
+                              GError **error)
 {
     uint8_t solid[256];
     fill_solid(solid, draw->drawn);
@@ -344,7 +343,7 @@ static bool draw_picture(Stage *stage, const Draw *draw, const Target *target, G
             target->coverage[p] = fl_over(own[3], target->coverage[p]);
         }
     fl_surface_wipe(stage->picture, box);
-    return !target->by_hand || add_picture_by_hand(stage, draw, target, error);
+    return true;
 }
 
 /** The mean colour of a picture, by its coverage. */
@@ -362,8 +361,9 @@ static void mean_colour(const uint8_t *picture, size_t n, uint8_t rgb[3])
 
 static bool draw_in(Stage *stage, const Draw *draw, const Target *target, GError **error)
 {
-    return draw->flat ? draw_flat(stage, draw, target, error)
-                      : draw_picture(stage, draw, target, error);
+    const bool drawn = draw->flat ? draw_flat(stage, draw, target, error)
+                                  : draw_picture(stage, draw, target, error);
+    return drawn && (!target->by_hand || add_steps_by_hand(stage, draw, target, error));
 }
 
 /** Copies the drawn pixels, cropped to their bounding box. */

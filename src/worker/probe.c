@@ -283,7 +283,7 @@ static int is_separable(FlFrameProbe *f, const FlGroupUnit *unit, guint first, G
     return fl_looks_alike(f->check, f->svg, &unit->leaf, piece, (int)n, f->page, error);
 }
 
-static bool probe_leaves(FlFrameProbe *f, GError **error)
+bool fl_frame_probe_run(FlFrameProbe *f, GError **error)
 {
     const FlLeaves *leaves = fl_svg_leaves(f->svg);
     guint unit = 0;
@@ -316,9 +316,4 @@ static bool probe_leaves(FlFrameProbe *f, GError **error)
         unit++;
     }
     return true;
-}
-
-bool fl_frame_probe_run(FlFrameProbe *f, GError **error)
-{
-    return probe_leaves(f, error);
 }
