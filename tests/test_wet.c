@@ -347,6 +347,21 @@ static void test_seen_paint(void)
     g_assert_cmpfloat(most_ink(-1, 0), ==, 0);
 }
 
+/* A shape that grows further than paint is looked for has the colour of its earlier edge. */
+static void test_grown(void)
+{
+    Scene *scene = scene_new();
+    draw_disk(80, RADIUS, scene->before);
+    for (int p = 0; p < PIXELS; p++)
+        scene->region[p] = scene->before[p] > 0 ? 0 : -1;
+    scene->pace = 1;
+    mark(scene, 80, 80, 14);
+    g_assert_cmpuint(scene->fronts->len, >, 0);
+    for (guint i = 0; i < scene->fronts->len; i++)
+        g_assert_cmpfloat(g_array_index(scene->fronts, FlFrontMark, i).ink[0], >, 0.5f);
+    scene_free(scene);
+}
+
 /* The darkness of the green of a layer, summed. */
 static double darkness(const Scene *scene)
 {
@@ -515,6 +530,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/fronts-go-with-a-shape-that-jumps", test_jump);
     g_test_add_func("/wet/paint-on-other-paint-marks-nothing", test_other_paint);
     g_test_add_func("/wet/seen-paint-runs-ahead", test_seen_paint);
+    g_test_add_func("/wet/what-grows-keeps-its-colour", test_grown);
     g_test_add_func("/wet/marks-fade-until-none-is-left", test_dries);
     g_test_add_func("/wet/marks-and-grain-move-with-the-paper", test_moved);
     g_test_add_func("/wet/the-paper-turns-with-the-camera", test_turned);

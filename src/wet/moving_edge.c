@@ -267,19 +267,23 @@ static void find_kept(const FlWetShape *shape, float pace_before, FlEdgePoint *p
                   (1 - fl_ease(1.3f, 2, shrunk / (moved + 3 * px)));
 }
 
-/** The paint seen some way inside, as it was laid in the frame before; none where a shape has
- * faded. Below a shape that covers it, paint keeps the ink it had. */
-static void find_ink(const FlWetShape *shape, const FlEdgePoint *was, FlEdgePoint *point)
+/** The paint seen some way inside, as it was laid in the frame before, there inside the nearest
+ * edge if the shape has just come to here; none where a shape has faded. Below a shape that covers
+ * it, paint keeps the ink it had. */
+static void find_ink(const FlWetShape *shape, const FlMovingEdge *before, const FlEdgePoint *was,
+                     FlEdgePoint *point)
 {
     const FlLaid *laid = shape->laid;
     float sum[3] = {0}, weight = 0, ground[2];
     fl_wet_ground(shape, point->x, point->y, ground);
+    float x = point->x - point->u - ground[0], y = point->y - point->v - ground[1];
+    const bool new = was &&fl_wet_plane_at(shape->distance_before, shape->rect, x, y) < -1;
+    const float nx = new ? was->nx : point->nx, ny = new ? was->ny : point->ny;
+    x = new ? (float)before->rect.x + was->x : (float)shape->rect.x + x;
+    y = new ? (float)before->rect.y + was->y : (float)shape->rect.y + y;
     for (int k = 1; k <= 4; k++) {
         const float depth = MIN(2.2f * (float)k * shape->px, 0.8f * point->half_width);
-        const float x = point->x - depth * point->nx - point->u - ground[0];
-        const float y = point->y - depth * point->ny - point->v - ground[1];
-        const int px = shape->rect.x + (int)floorf(x + 0.5f);
-        const int py = shape->rect.y + (int)floorf(y + 0.5f);
+        const int px = (int)floorf(x - depth * nx + 0.5f), py = (int)floorf(y - depth * ny + 0.5f);
         if (px < 0 || py < 0 || px >= laid->width || py >= laid->height)
             continue;
         const size_t cell = (size_t)py * (size_t)laid->width + (size_t)px;
@@ -379,7 +383,7 @@ static void find_point(const FlWetShape *shape, const FlMovingEdge *before, bool
     find_speed(shape, known, point);
     find_width(shape, edge->distance, point);
     const FlEdgePoint *was = point_before(shape, before, point);
-    find_ink(shape, was, point);
+    find_ink(shape, before, was, point);
     const float speed = was ? was->speed : 0;
     find_kept(shape, was ? was->pace : 0, point);
     point->kept_before = was ? was->kept : point->kept;
