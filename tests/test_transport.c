@@ -93,11 +93,13 @@ static void reference_map(const Disk *disk, Plane u[2])
     FlRng rng = {fl_hash64(3)};
     const float left = 96 * fl_rng_float(&rng), top = 96 * fl_rng_float(&rng);
     for (int p = 0; p < SIDE * SIDE; p++) {
-        const double t = CLAMP((double)disk->guides.distance[p] / 5, 0, 1);
+        const double depth = (double)disk->guides.distance[p], t = CLAMP(depth / 5, 0, 1);
         float g[2];
         fl_tile_gradient(disk->tile, (float)(p % SIDE) + left, (float)(p / SIDE) + top, g);
+        const double way = t * t * (3 - 2 * t) * hypot((double)g[0], (double)g[1]);
+        const double share = t * t * (3 - 2 * t) * fmin(depth / 2 / fmax(way, 1e-9), 1);
         for (int c = 0; c < 2; c++)
-            u[c][p] = disk->guides.mask[p] ? -t * t * (3 - 2 * t) * (double)g[c] / 8 : 0;
+            u[c][p] = disk->guides.mask[p] ? -share * (double)g[c] / 8 : 0;
     }
     for (int k = 0; k < 3; k++)
         square_map(u);

@@ -14,6 +14,7 @@
 #define REACH 8           // px of the tile over which strain is judged
 #define LEAST_REACH 5     // px of the drawing
 #define FARTHEST 18.0f    // px of the tile that ink moves at most: what the squarings are good for
+#define HALF_WAY 0.5f     // of the depth: further on, ink of thin tips would fold
 #define TEAR_TAPERS 1.5f  // within which ink moves less where two shapes meet
 #define AMOUNT_STEPS 1024 // in the table of colours, of an amount of 1
 #define MOST_AMOUNT 8
@@ -142,7 +143,7 @@ static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, const
             if (taper == 0)
                 continue;
             add_layers(ink, whole, x, y, taper, v);
-            clamp_speed(v, farthest);
+            clamp_speed(v, fminf(farthest, HALF_WAY * guides->distance[pixel]));
         }
 }
 
