@@ -49,32 +49,12 @@ _Alignas(64) const int16_t fl_vote_steps[2][FL_VOTES][2] = {
     {COLUMN_X(2), COLUMN_X(1), COLUMN_X(0), COLUMN_X(-1), COLUMN_X(-2)},
     {COLUMN_Y(2), COLUMN_Y(1), COLUMN_Y(0), COLUMN_Y(-1), COLUMN_Y(-2)}};
 
-static int offset_along(const int16_t turn[2], const int16_t step[2])
-{
-    return (turn[0] * step[0] + turn[1] * step[1] + (1 << 9)) >> 10;
-}
-
-static void find_places(const FlVoteMatches *covering, FlVotes *votes)
-{
-    for (int k = 0; k < FL_PATCH_PIXELS; k++) {
-        const int16_t *turn = covering->turn[k];
-        votes->x[k] = (uint16_t)(covering->x[k] + offset_along(turn, fl_vote_steps[0][k]));
-        votes->y[k] = (uint16_t)(covering->y[k] + offset_along(turn, fl_vote_steps[1][k]));
-        votes->frame[k] = covering->frame[k];
-    }
-}
-
 bool fl_vote_c(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4])
 {
-    FlVotes votes;
-    find_places(covering, &votes);
-    return fl_vote_of(&votes, cluster_votes_c, fl_spline_sample_c, voted, colour);
+    return fl_vote_of(covering, cluster_votes_c, fl_spline_sample_c, voted, colour);
 }
 
 bool fl_vote_doubled_c(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4][4])
 {
-    FlVotes votes;
-    find_places(covering, &votes);
-    return fl_vote_doubled_of(&votes, covering->turn, cluster_votes_c, fl_spline_sample_c, voted,
-                              colour);
+    return fl_vote_doubled_of(covering, cluster_votes_c, fl_spline_sample_c, voted, colour);
 }

@@ -12,6 +12,22 @@
  */
 typedef int (*FlClusterVotes)(const FlVotes *votes, FlVoteCluster *clusters);
 
+/* The place along an axis to which a match moves a vote. */
+static inline uint16_t moved(uint16_t match, const int16_t turn[2], const int16_t step[2])
+{
+    return (uint16_t)(match + ((turn[0] * step[0] + turn[1] * step[1] + (1 << 9)) >> 10));
+}
+
+/* The votes of the patches over a pixel; those beyond FL_PATCH_PIXELS do not count. */
+static inline void find_places(const FlVoteMatches *covering, FlVotes *votes)
+{
+    for (int k = 0; k < FL_VOTES; k++) {
+        votes->x[k] = moved(covering->x[k], covering->turn[k], fl_vote_steps[0][k]);
+        votes->y[k] = moved(covering->y[k], covering->turn[k], fl_vote_steps[1][k]);
+        votes->frame[k] = covering->frame[k];
+    }
+}
+
 /* The mean of first + sum / n over the n votes, half away from first. */
 static inline int mean_of(int first, int sum, uint32_t votes)
 {
@@ -45,12 +61,14 @@ static inline void colour_of(const Sum *sum, float colour[4])
 }
 
 /** The colour that votes give. */
-static inline bool fl_vote_of(const FlVotes *votes, FlClusterVotes cluster_votes,
+static inline bool fl_vote_of(const FlVoteMatches *covering, FlClusterVotes cluster_votes,
                               FlSplineSample sample, const FlVoteSource *voted, float colour[4])
 {
+    FlVotes votes;
     FlVoteCluster clusters[FL_PATCH_PIXELS];
     Sum sum = {0};
-    const int n = cluster_votes(votes, clusters);
+    find_places(covering, &votes);
+    const int n = cluster_votes(&votes, clusters);
     for (const FlVoteCluster *o = clusters; o < clusters + n; o++)
         add_cluster(&sum, o, __builtin_popcount(o->votes), mean_of(o->x, o->sum_x, o->votes),
                     mean_of(o->y, o->sum_y, o->votes), sample, voted);
@@ -70,20 +88,22 @@ static inline void add_children(Sum sum[4], const FlVoteCluster *cluster, const 
     }
 }
 
-/** Likewise for FlVoteDoubled; votes, which are changed, and turn: those of its covering. */
-static inline bool fl_vote_doubled_of(FlVotes *votes, const int16_t (*turn)[2],
-                                      FlClusterVotes cluster_votes, FlSplineSample sample,
-                                      const FlVoteSource *voted, float colour[4][4])
+/** Likewise for FlVoteDoubled. */
+static inline bool fl_vote_doubled_of(const FlVoteMatches *covering, FlClusterVotes cluster_votes,
+                                      FlSplineSample sample, const FlVoteSource *voted,
+                                      float colour[4][4])
 {
+    FlVotes votes;
     FlVoteCluster clusters[FL_PATCH_PIXELS];
     Sum sum[4] = {0};
+    find_places(covering, &votes);
     for (int k = 0; k < FL_PATCH_PIXELS; k++) {
-        votes->x[k] = (uint16_t)(2 * votes->x[k] - FL_VOTE_BIAS);
-        votes->y[k] = (uint16_t)(2 * votes->y[k] - FL_VOTE_BIAS);
+        votes.x[k] = (uint16_t)(2 * votes.x[k] - FL_VOTE_BIAS);
+        votes.y[k] = (uint16_t)(2 * votes.y[k] - FL_VOTE_BIAS);
     }
-    const int n = cluster_votes(votes, clusters);
+    const int n = cluster_votes(&votes, clusters);
     for (const FlVoteCluster *o = clusters; o < clusters + n; o++)
-        add_children(sum, o, turn[fl_vote_leader(o->votes)], sample, voted);
+        add_children(sum, o, covering->turn[fl_vote_leader(o->votes)], sample, voted);
     for (int child = 0; child < 4; child++)
         colour_of(&sum[child], colour[child]);
     return n > 0;

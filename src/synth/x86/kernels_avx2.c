@@ -328,50 +328,15 @@ static int cluster_votes(const FlVotes *votes, FlVoteCluster *clusters)
     return n;
 }
 
-/* The offsets that sixteen turns add to the places of their matches, along an axis. */
-static inline __m256i offsets_along(const int16_t (*turn)[2], const int16_t (*step)[2])
-{
-    const __m256i half = _mm256_set1_epi32(1 << 9);
-    const __m256i low = _mm256_madd_epi16(_mm256_loadu_si256((const __m256i *)turn),
-                                          _mm256_load_si256((const __m256i *)step));
-    const __m256i high = _mm256_madd_epi16(_mm256_loadu_si256((const __m256i *)(turn + 8)),
-                                           _mm256_load_si256((const __m256i *)(step + 8)));
-    const __m256i both = _mm256_packs_epi32(_mm256_srai_epi32(_mm256_add_epi32(low, half), 10),
-                                            _mm256_srai_epi32(_mm256_add_epi32(high, half), 10));
-    return _mm256_permute4x64_epi64(both, _MM_SHUFFLE(3, 1, 2, 0));
-}
-
-static inline void add_offsets(const uint16_t *from, __m256i offsets, uint16_t *to)
-{
-    const __m256i places = _mm256_loadu_si256((const __m256i *)from);
-    _mm256_store_si256((__m256i *)to, _mm256_add_epi16(places, offsets));
-}
-
-static void find_places(const FlVoteMatches *covering, FlVotes *votes)
-{
-    for (int k = 0; k < FL_VOTES; k += 16) {
-        const int16_t(*turn)[2] = covering->turn + k;
-        add_offsets(covering->x + k, offsets_along(turn, fl_vote_steps[0] + k), votes->x + k);
-        add_offsets(covering->y + k, offsets_along(turn, fl_vote_steps[1] + k), votes->y + k);
-        _mm256_store_si256((__m256i *)(votes->frame + k),
-                           _mm256_loadu_si256((const __m256i *)(covering->frame + k)));
-    }
-}
-
 bool fl_vote_avx2(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4])
 {
-    FlVotes votes;
-    find_places(covering, &votes);
-    return fl_vote_of(&votes, cluster_votes, fl_spline_sample_avx2, voted, colour);
+    return fl_vote_of(covering, cluster_votes, fl_spline_sample_avx2, voted, colour);
 }
 
 bool fl_vote_doubled_avx2(const FlVoteMatches *covering, const FlVoteSource *voted,
                           float colour[4][4])
 {
-    FlVotes votes;
-    find_places(covering, &votes);
-    return fl_vote_doubled_of(&votes, covering->turn, cluster_votes, fl_spline_sample_avx2, voted,
-                              colour);
+    return fl_vote_doubled_of(covering, cluster_votes, fl_spline_sample_avx2, voted, colour);
 }
 
 /* The squared differences of a pixel; the past's are weighted first, the others by 32767, which
