@@ -368,10 +368,8 @@ static const char *apply_background(const FlCssEffects *effects, xmlNode *node,
     xmlNode *rect = xmlNewDocNode(node->doc, node->ns, (const xmlChar *)"rect", NULL);
     fl_set_attribute(rect, "id", "background");
     fl_set_attribute(rect, "fill", colour);
-    for (int i = 0; i < 4; i++) {
-        g_autofree char *side = fl_css_number_text(box[i]);
-        fl_set_attribute(rect, names[i], side);
-    }
+    for (int i = 0; i < 4; i++)
+        fl_set_numbers(rect, names[i], &box[i], 1);
     if (node->children)
         xmlAddPrevSibling(node->children, rect);
     else

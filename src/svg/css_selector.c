@@ -407,11 +407,6 @@ static const xmlNode *next_element(const xmlNode *node, bool backwards)
     return (backwards ? xmlPreviousElementSibling : xmlNextElementSibling)((xmlNode *)node);
 }
 
-static const xmlNode *parent_element(const xmlNode *node)
-{
-    return node->parent && node->parent->type == XML_ELEMENT_NODE ? node->parent : NULL;
-}
-
 static bool matches_any(const GPtrArray *list, const xmlNode *node, FlSelectorWork *work)
 {
     for (guint i = 0; i < list->len; i++)
@@ -543,7 +538,7 @@ static bool matches_simple(const Simple *simple, const xmlNode *node, FlSelector
     case SIMPLE_ONLY:
         return is_only(simple, node, work);
     case SIMPLE_ROOT:
-        return !parent_element(node);
+        return !fl_element_around(node);
     case SIMPLE_EMPTY:
         return is_empty(node);
     case SIMPLE_LINK:
@@ -575,7 +570,7 @@ static bool matches_from(const FlSelector *selector, int i, const xmlNode *node,
         return true;
     const bool up = compound->combinator == ' ' || compound->combinator == '>';
     const bool once = compound->combinator == '>' || compound->combinator == '+';
-    for (const xmlNode *at = node; (at = up ? parent_element(at) : next_element(at, true));) {
+    for (const xmlNode *at = node; (at = up ? fl_element_around(at) : next_element(at, true));) {
         if (matches_from(selector, i - 1, at, work))
             return true;
         if (once)

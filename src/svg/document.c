@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/limits.h"
-#include "svg/css_scan.h"
+#include "svg/css_value.h"
 #include <errno.h>
 #include <gio/gio.h>
 #include <glib/gstdio.h>
@@ -25,9 +25,14 @@ bool fl_is_one_of(const xmlNode *node, const char *const *names)
     return false;
 }
 
+xmlNode *fl_element_around(const xmlNode *node)
+{
+    return node->parent && node->parent->type == XML_ELEMENT_NODE ? node->parent : NULL;
+}
+
 bool fl_is_root(const xmlNode *node)
 {
-    return !node->parent || node->parent->type != XML_ELEMENT_NODE;
+    return !fl_element_around(node);
 }
 
 bool fl_is_container(const xmlNode *node)
@@ -139,6 +144,16 @@ void fl_set_attribute(xmlNode *node, const char *name, const char *value)
         xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)value);
     else
         xmlUnsetProp(node, (const xmlChar *)name);
+}
+
+void fl_set_numbers(xmlNode *node, const char *name, const double *v, int n)
+{
+    g_autoptr(GString) list = g_string_new(NULL);
+    for (int i = 0; i < n; i++) {
+        g_autofree char *number = fl_css_number_text(v[i]);
+        g_string_append_printf(list, "%s%s", i ? " " : "", number);
+    }
+    fl_set_attribute(node, name, list->str);
 }
 
 bool fl_view_box(const xmlNode *node, double box[4])

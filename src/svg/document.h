@@ -46,6 +46,9 @@ bool fl_is_one_of(const xmlNode *node, const char *const *names);
 /** Returns: true if an element is in no other one. */
 bool fl_is_root(const xmlNode *node);
 
+/** The element around a node; NULL around the root. */
+xmlNode *fl_element_around(const xmlNode *node);
+
 /** Returns: true if node is a container of elements: <g>, <svg> or <a>. */
 bool fl_is_container(const xmlNode *node);
 
@@ -54,6 +57,9 @@ xmlChar *fl_attribute(const xmlNode *node, const char *name);
 
 /** Sets an attribute without a namespace; removes it if the value is NULL or "". */
 void fl_set_attribute(xmlNode *node, const char *name, const char *value);
+
+/** Sets an attribute to n numbers with spaces between them. */
+void fl_set_numbers(xmlNode *node, const char *name, const double *v, int n);
 
 /** Reads viewBox: x, y, width and height. Returns: false if it is missing, damaged or empty; *box
  * stays as it is then. */

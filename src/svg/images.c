@@ -77,12 +77,6 @@ static double side_of(const xmlNode *node, const char *name)
     return text && fl_css_number((const char *)text, &units, 0, &px) && px > 0 ? px : 0;
 }
 
-static void set_side(xmlNode *node, const char *name, double px)
-{
-    g_autofree char *text = fl_css_number_text(px);
-    fl_set_attribute(node, name, text);
-}
-
 static bool is_auto(const xmlNode *node, const char *name)
 {
     g_autoptr(xmlChar) text = fl_attribute(node, name);
@@ -97,7 +91,8 @@ static void complete_size(xmlNode *node, const int size[2])
     if (!fl_is(node, "image") || wide == is_auto(node, "height") || side == 0 || size[0] < 1)
         return;
     const double ratio = (double)size[0] / size[1];
-    set_side(node, wide ? "width" : "height", wide ? side * ratio : side / ratio);
+    const double other = wide ? side * ratio : side / ratio;
+    fl_set_numbers(node, wide ? "width" : "height", &other, 1);
 }
 
 /** Has a node refer to a PNG instead of a WebP image, whose size has been checked. */
@@ -137,12 +132,11 @@ static void enlarge(xmlNode *root, const xmlNode *node)
         return; // librsvg decides
     const double place = fmax(side_of(node, "width"), side_of(node, "height"));
     const double scale = place > 0 ? ENLARGED * place / fmax(size[0], size[1]) : 1;
-    g_autofree char *width = fl_css_number_text(size[0]), *height = fl_css_number_text(size[1]);
-    g_autofree char *whole = g_strdup_printf("0 0 %s %s", width, height);
+    const double large[] = {size[0] * scale, size[1] * scale};
     if (!has_box)
-        fl_set_attribute(root, "viewBox", whole);
-    set_side(root, "width", size[0] * scale);
-    set_side(root, "height", size[1] * scale);
+        fl_set_numbers(root, "viewBox", (double[]){0, 0, size[0], size[1]}, 4);
+    fl_set_numbers(root, "width", &large[0], 1);
+    fl_set_numbers(root, "height", &large[1], 1);
 }
 
 /** Puts a drawing into the drawing, read as any other: librsvg gets its plain SVG. */

@@ -65,18 +65,14 @@ static void scale_size(xmlNode *root, const char *name, double factor)
 static void show_page(xmlNode *root, const xmlNode *page)
 {
     static const char *const names[] = {"x", "y", "width", "height"};
-    double old[4] = {0};
+    double old[4] = {0}, box[4];
     fl_view_box(root, old);
-    GString *box = g_string_new(NULL);
     for (int i = 0; i < 4; i++) {
-        const double v = number_of(page, names[i]);
-        g_autofree char *text = fl_css_number_text(v);
-        g_string_append_printf(box, "%s%s", i ? " " : "", text);
-        if (i >= 2 && old[i] > 0 && v > 0)
-            scale_size(root, names[i], v / old[i]);
+        box[i] = number_of(page, names[i]);
+        if (i >= 2 && old[i] > 0 && box[i] > 0)
+            scale_size(root, names[i], box[i] / old[i]);
     }
-    fl_set_attribute(root, "viewBox", box->str);
-    g_string_free(box, TRUE);
+    fl_set_numbers(root, "viewBox", box, 4);
 }
 
 bool fl_select_page(xmlDoc *doc, int page, const char *path, GError **error)

@@ -92,14 +92,16 @@ static void check_target(const Lint *lint, const xmlNode *node, const char *name
 static void check_references(const Lint *lint, xmlNode *node)
 {
     static const char *const names[] = {"clip-path", "mask", "filter", "fill", "stroke", NULL};
+    bool refers = false; // few elements do
     for (xmlAttr *a = node->properties; a; a = a->next) {
         g_autoptr(xmlChar) value = xmlNodeListGetString(node->doc, a->children, 1);
-        g_autofree char *mended =
-            value && strstr((const char *)value, "url(") ? mend(lint, (const char *)value) : NULL;
+        const bool has_url = value && strstr((const char *)value, "url(");
+        g_autofree char *mended = has_url ? mend(lint, (const char *)value) : NULL;
+        refers |= has_url;
         if (mended)
             xmlSetNsProp(node, a->ns, a->name, (const xmlChar *)mended);
     }
-    for (int i = 0; names[i]; i++) {
+    for (int i = 0; refers && names[i]; i++) {
         g_autofree char *value = fl_property(node, names[i]);
         if (value)
             check_target(lint, node, names[i], value);

@@ -97,11 +97,8 @@ static void turn_blur(xmlNode *step, const FlAffine *m)
         const double x = k & 1 ? -1 : 1, y = k & 2 ? -1 : 1;
         const double a = (m->yy * x - m->xy * y) / determinant;
         const double b = (m->xx * y - m->yx * x) / determinant;
-        g_autofree char *first = fl_css_number_text(px * fmax(a, 0)),
-                        *second = fl_css_number_text(px * fmax(b, 0));
-        g_autofree char *both = g_strdup_printf("%s %s", first, second);
         if (a > -1e-9 && b > -1e-9)
-            fl_set_attribute(step, "stdDeviation", both);
+            fl_set_numbers(step, "stdDeviation", (double[]){px * fmax(a, 0), px * fmax(b, 0)}, 2);
     }
 }
 

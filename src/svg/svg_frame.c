@@ -9,24 +9,12 @@
 #include "svg/svg_data.h"
 #include <math.h>
 
-static void set_number(xmlNode *node, const char *name, double value)
-{
-    char text[G_ASCII_DTOSTR_BUF_SIZE];
-    g_ascii_dtostr(text, sizeof text, value);
-    fl_set_attribute(node, name, text);
-}
-
 static void set_canvas(xmlNode *root, const FlCanvas *canvas)
 {
-    char n[4][G_ASCII_DTOSTR_BUF_SIZE];
-    g_autofree char *box =
-        g_strdup_printf("%s %s %s %s", g_ascii_dtostr(n[0], sizeof n[0], canvas->x),
-                        g_ascii_dtostr(n[1], sizeof n[1], canvas->y),
-                        g_ascii_dtostr(n[2], sizeof n[2], canvas->width),
-                        g_ascii_dtostr(n[3], sizeof n[3], canvas->height));
-    fl_set_attribute(root, "viewBox", box);
-    set_number(root, "width", canvas->width);
-    set_number(root, "height", canvas->height);
+    const double box[] = {canvas->x, canvas->y, canvas->width, canvas->height};
+    fl_set_numbers(root, "viewBox", box, 4);
+    fl_set_numbers(root, "width", box + 2, 1);
+    fl_set_numbers(root, "height", box + 3, 1);
 }
 
 /** Leaves one of several frames in the document. */

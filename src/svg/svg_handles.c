@@ -57,17 +57,11 @@ static xmlNode *group_of(GHashTable *ids, const FlGroupMask *mask)
     return g_hash_table_lookup(ids, mask->group);
 }
 
-/** The element around a node; NULL around the root. */
-static xmlNode *outwards(const xmlNode *node)
-{
-    return node->parent && node->parent->type == XML_ELEMENT_NODE ? node->parent : NULL;
-}
-
 /** Adds declarations to a node and its ancestors, up to the first that already has them. */
 static void declare_outwards(xmlNode *node, const char *declarations)
 {
     while (node && fl_declare(node, declarations))
-        node = outwards(node);
+        node = fl_element_around(node);
 }
 
 /** Takes masks and clips off the groups of leaves->mask, and clips off those around them. */
@@ -110,7 +104,8 @@ static void flood_masks(xmlDoc *doc, const FlLeaves *leaves, int depth)
         xmlNode *node = group_of(ids, mask);
         // the hidden content still determines the box; librsvg ignores !important for filters
         fl_declare(node, PLAIN "visibility:hidden !important;filter:url(#" FLOOD_ID ")");
-        declare_outwards(outwards(node), PLAIN "mask:none !important;filter:none !important");
+        declare_outwards(fl_element_around(node),
+                         PLAIN "mask:none !important;filter:none !important");
     }
 }
 
