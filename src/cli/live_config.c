@@ -300,36 +300,13 @@ bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char
 
 /* ---- for the page --------------------------------------------------------------------------- */
 
-/* The form of a value, for the page's controls: words come from the value's own description. */
-static const char *kind_of(const FlOption *option)
-{
-    switch (option->type) {
-    case FL_OPTION_INT:
-    case FL_OPTION_COUNT:
-        return "integer";
-    case FL_OPTION_REAL:
-    case FL_OPTION_DIAL:
-    case FL_OPTION_FIXED:
-    case FL_OPTION_FLOAT:
-    case FL_OPTION_WEIGHT:
-        return "number";
-    case FL_OPTION_STYLE:
-        return "style";
-    case FL_OPTION_FLAG:
-    case FL_OPTION_SWITCH:
-        return "switch";
-    default:
-        return "text";
-    }
-}
-
 static void append_option(GString *json, const FlOption *option)
 {
     g_autofree char *help = fl_option_help(option);
     fl_json_begin(json, NULL, '{');
     fl_json_text(json, "name", option->name);
     fl_json_text(json, "section", option->section == FL_SECTION_PROJECT ? "project" : "defaults");
-    fl_json_text(json, "kind", kind_of(option));
+    fl_json_bool(json, "whole", option->type == FL_OPTION_INT || option->type == FL_OPTION_COUNT);
     fl_json_text(json, "value", option->value);
     fl_json_text(json, "unit", option->unit);
     fl_json_number(json, "min", option->min, option->max > option->min);
@@ -345,7 +322,7 @@ static void append_style(GString *json, const FlStyleEntry *style)
     fl_json_text(json, "name", style->name);
     fl_json_text(json, "title", style->title);
     fl_json_text(json, "character", style->character);
-    g_string_append_printf(json, ",\"hidden\":%s", style->hidden ? "true" : "false");
+    fl_json_bool(json, "hidden", style->hidden);
     g_string_append_c(json, '}');
 }
 

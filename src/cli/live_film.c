@@ -252,8 +252,8 @@ static char *facts_of(FlLiveFilm *film, const FlFilmFrame *frame)
     fl_json_number(json, "height", height, true);
     fl_json_number(json, "fps", info->fps, true);
     fl_json_number(json, "read", film->n_opened + fl_film_stats(film->film)->n_read, true);
-    g_string_append_printf(json, ",\"transparent\":%s,\"numbers\":[",
-                           info->transparent ? "true" : "false");
+    fl_json_bool(json, "transparent", info->transparent);
+    fl_json_begin(json, "numbers", '[');
     for (int f = 0; f < info->n_frames; f++)
         fl_json_number(json, NULL, fl_film_number(film->film, f), true);
     g_string_append(json, "],\"regions\":[");
