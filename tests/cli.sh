@@ -154,6 +154,8 @@ printf '[project]\nversion = 1\nlayers = film/{region}_%%d.png\nvectors = on\nau
     "$program" whole -c film.conf --styles 01 -o sheet0.png -f 2 >>out 2>>err && [ -s sheet0.png ] &&
     [ -s fluidy/w_preview_0002.png ] && rm -r fluidy && [ ! -e film ]
 result $? 'drafts and sheets are made without the layers, vectors and sound of a config'
+refuses 'where a film begins in no sound is refused' 2 '--audio-from says where *; name that by --audio' \
+    whole -s 01 -o sound.mkv --audio-from 2
 "$program" whole --styles 01,03 >out 2>err && [ "$(ls fluidy)" = w_styles.png ] && rm -r fluidy &&
     grep -q 'style 01 Watercolour' err &&
     "$program" whole --styles 01,03 -o sheet.png -f 2 -q >out 2>err && [ -s sheet.png ] && [ ! -s err ]

@@ -50,14 +50,11 @@ for signal in INT TERM; do
     result $? "the frames after SIG$signal and a second run are those of a whole render"
 done
 
-mkdir long
-for i in $(seq 10 53); do
-    drawing long/w_00$i.svg 56 $((i % 9))
-done
-film=long output=w_%05d.png wet=(--front 2 --stain 1 --detail draft)
-"$program" long -s "$style" -o 'long_whole/w_%05d.png' --progress none "${wet[@]}" 2>err
-stop long_resumed INT 50 "${wet[@]}"
-[ $? = 75 ] && "$program" long -s "$style" -o 'long_resumed/w_%05d.png' --progress none "${wet[@]}" 2>err &&
+film=$(dirname "$style")/animations/snowman-wave-layers output=w_000%02d.png
+wet=(--style "$(dirname "$style")/styles/05" --width 120 --detail draft)
+"$program" "$film" -s 05 -o "long_whole/$output" --progress none "${wet[@]}" 2>err
+stop long_resumed INT 40 "${wet[@]}"
+[ $? = 75 ] && "$program" "$film" -s 05 -o "long_resumed/$output" --progress none "${wet[@]}" 2>err &&
     grep -q 'resuming an earlier run' err && same long_resumed long_whole
 result $? 'the paper has the marks of all frames before the first of a second run'
 unset film output

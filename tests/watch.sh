@@ -140,6 +140,14 @@ follows && mv picture.png film/linked && follows && grep -q 'picture.png has cha
 result $? 'and followed when it comes'
 ends TERM 0
 drawing film/w_0003.svg 56 3
+mkdir maps && cp nothing/w_0001.png maps/m_1.png
+printf '[defaults]\nfront = 2\nstain = 1\nmap-front = maps/m_%%d.png\n' >one.conf
+rm -rf now kept
+watch -c one.conf
+follows
+touches maps/m_4.png cat nothing/w_0002.png
+result $? 'a picture that comes to a control map is followed'
+ends TERM 0
 echo >one.conf
 
 # Large frames take long enough to be stopped while they are painted, or changed.

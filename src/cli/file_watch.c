@@ -116,15 +116,26 @@ static void add_input(FlFileWatch *watch, const char *input)
         add_pattern(watch, folder, drawings[k]);
 }
 
+/* A glob of the files that a name such as map_%04d.png or map_####.png stands for, to be freed;
+ * NULL: it has no number. */
+static char *all_of(const char *name)
+{
+    g_auto(GStrv) parts = g_regex_split_simple("%[0-9]*d|#+", name, 0, 0);
+    return parts[1] || strpbrk(name, "*?") ? g_strjoinv("*", parts) : NULL;
+}
+
 void fl_file_watch_add(FlFileWatch *watch, const char *path)
 {
     if (!g_hash_table_add(watch->added, g_strdup(path)))
         return;
     g_autofree char *folder = g_path_get_dirname(path);
+    g_autofree char *base = g_path_get_basename(path), *names = all_of(base);
     if (g_file_test(path, G_FILE_TEST_IS_DIR))
         add_pattern(watch, path, "*");
+    else if (names)
+        add_pattern(watch, folder, names);
     else
-        g_hash_table_add(folder_at(watch, folder)->names, g_path_get_basename(path));
+        g_hash_table_add(folder_at(watch, folder)->names, g_steal_pointer(&base));
 }
 
 void fl_file_watch_add_all(FlFileWatch *watch, const FlFileWatch *old)

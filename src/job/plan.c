@@ -117,6 +117,10 @@ static bool fit_output(FlPlan *plan, const FlRenderOptions *given, GError **erro
 {
     FlRenderOptions *o = &plan->options;
     FlOutputs *out = &plan->out;
+    if (given->audio_from > 0 && !o->audio)
+        return fl_fail(
+            error, FL_ERROR_USAGE,
+            "‘audio-from’ says where the film begins in its sound; name that by ‘audio’");
     if (!out->movie && !out->format->film) {
         if (given->audio)
             return fl_fail(error, FL_ERROR_USAGE,
