@@ -82,11 +82,6 @@ static float cover_of(float depth)
     return CLAMP(depth + 0.5f, 0, 1);
 }
 
-static float between(float before, float now, float share)
-{
-    return before + share * (now - before);
-}
-
 /** 1 where a stain takes the place of fronts; near its sides, where it breaks up, they stay and dry
  * by themselves. */
 static float away_from_sides(const FlWetShape *shape, float depth)
@@ -116,7 +111,7 @@ static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, floa
     const float receded = point->receded - point->receding * (1 - cover.last);
     const float depth = MIN(MAX(cover.most, depth_between_sides(pixel)), receded);
     const float kept =
-        (1 - fl_ease(1.3f, 2, far)) * between(point->kept_before, point->kept, cover.last);
+        (1 - fl_ease(1.3f, 2, far)) * fl_wet_between(point->kept_before, point->kept, cover.last);
     const float sides = fl_ease(0, 0.25f, kept) * (1 - away_from_sides(shape, depth));
     FlStainMark mark = {.at = at,
                         .lost = (cover_of(cover.most) - cover_of(now)) * (1 - sides),
@@ -125,7 +120,7 @@ static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, floa
     mark.charge =
         stain_at(pixel, dials) * kept * (1 - cover_of(now)) * fl_ease(0, 0.1f, cover.most - now);
     for (int c = 0; c < 3; c++)
-        mark.ink[c] = between(point->ink_before[c], point->ink[c], cover.last);
+        mark.ink[c] = fl_wet_between(point->ink_before[c], point->ink[c], cover.last);
     const float black = MIN(MIN(mark.ink[0], mark.ink[1]), mark.ink[2]);
     for (int c = 0; c < 3; c++) // a little of it is no stain as dark as all
         mark.ink[c] /= 1 + 0.6f * black;

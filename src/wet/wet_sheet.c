@@ -77,19 +77,33 @@ FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t at)
                     c * (at / sheet->page.width) + c / 2);
 }
 
-/** Adds a share of a cell's paint: ink, age, granulation and line are means by amounts. */
-static void mix_in(const FlWetCell *cell, float share, FlWetCell *sum)
+/** The contents of a cell, so that they can be mixed by shares. */
+typedef enum Channel {
+    FRONTS, // 1 where there is a front
+    FRONT,
+    EDGE,
+    LINE,   // times the front
+    STAINS, // 1 where there is a stain
+    STAIN,
+    FILM,
+    DEPTH,
+    AGE,         // times stain and film
+    GRANULATION, // times all paint, and so are
+    INK,         // three
+    N_CHANNELS = INK + 3,
+} Channel;
+
+static void read_cell(const FlWetCell *cell, float to[N_CHANNELS])
 {
-    const float front = share * cell->front, wet = share * (cell->stain + cell->film);
-    const float paint = front + wet;
-    sum->front += front, sum->line += front * cell->line;
-    sum->edge += share * (cell->front > 0 ? cell->edge : -1);
-    sum->stain += share * cell->stain, sum->film += share * cell->film;
-    sum->age += wet * cell->age;
-    sum->depth += share * (wet > 0 ? cell->depth : -1);
-    sum->granulation += paint * cell->granulation;
+    const float stain = cell->stain + cell->film, paint = stain + cell->front;
+    to[FRONTS] = cell->front > 0, to[STAINS] = stain > 0;
+    to[FRONT] = cell->front, to[EDGE] = cell->front > 0 ? cell->edge : -1;
+    to[LINE] = cell->front * cell->line;
+    to[STAIN] = cell->stain, to[FILM] = cell->film;
+    to[DEPTH] = stain > 0 ? cell->depth : -1;
+    to[AGE] = stain * cell->age, to[GRANULATION] = paint * cell->granulation;
     for (int c = 0; c < 3; c++)
-        sum->ink[c] += paint * cell->ink[c];
+        to[INK + c] = paint * cell->ink[c];
 }
 
 /** The paint at a place between cells. */
@@ -97,20 +111,27 @@ static FlWetCell cell_between(const FlWetSheet *sheet, FlPoint at)
 {
     const int x = (int)floor(at.x), y = (int)floor(at.y);
     const float right = (float)(at.x - x), below = (float)(at.y - y);
-    FlWetCell sum = {0};
+    float sum[N_CHANNELS] = {0}, own[N_CHANNELS];
     for (int k = 0; k < 4; k++) {
         const int column = x + k % 2, row = y + k / 2;
         const float share = (k % 2 ? right : 1 - right) * (k / 2 ? below : 1 - below);
         const bool there =
             column >= 0 && row >= 0 && column < sheet->page.width && row < sheet->page.height;
         const size_t cell = (size_t)row * (size_t)sheet->page.width + (size_t)column;
-        mix_in(there ? &sheet->cell[cell] : &(FlWetCell){0}, share, &sum);
+        read_cell(there ? &sheet->cell[cell] : &(FlWetCell){0}, own);
+        for (int c = 0; c < N_CHANNELS; c++)
+            sum[c] += share * own[c];
     }
-    const float wet = MAX(sum.stain + sum.film, 1e-9f), paint = MAX(sum.front + wet, 1e-9f);
-    sum.line /= MAX(sum.front, 1e-9f), sum.age /= wet, sum.granulation /= paint;
-    for (int c = 0; c < 3; c++)
-        sum.ink[c] /= paint;
-    return sum;
+    const float wet = MAX(sum[STAIN] + sum[FILM], 1e-9f), paint = MAX(sum[FRONT] + wet, 1e-9f);
+    return (FlWetCell){.front = sum[FRONT],
+                       .edge = sum[EDGE],
+                       .line = sum[LINE] / MAX(sum[FRONT], 1e-9f),
+                       .stain = sum[STAIN],
+                       .film = sum[FILM],
+                       .age = sum[AGE] / wet,
+                       .depth = sum[DEPTH],
+                       .granulation = sum[GRANULATION] / paint,
+                       .ink = {sum[INK] / paint, sum[INK + 1] / paint, sum[INK + 2] / paint}};
 }
 
 bool fl_wet_sheet_turn(FlWetSheet *sheet, const FlAffine *from, GError **error)
@@ -196,18 +217,13 @@ static FlWetCell *cell_at(FlWetSheet *sheet, int32_t at)
     return &sheet->cell[at];
 }
 
-static float between(float a, float b, float weight)
-{
-    return a + (b - a) * weight;
-}
-
 /** Mixes paint that comes to a cell with the cell's own: ink and granulation by their amounts. */
 static void add_ink(FlWetCell *cell, float more, const float ink[3], float granulation)
 {
     const float share = more / (cell->front + cell->stain + cell->film + more);
     for (int c = 0; c < 3; c++)
-        cell->ink[c] = between(cell->ink[c], ink[c], share);
-    cell->granulation = between(cell->granulation, granulation, share);
+        cell->ink[c] = fl_wet_between(cell->ink[c], ink[c], share);
+    cell->granulation = fl_wet_between(cell->granulation, granulation, share);
 }
 
 /** The depth to which a stain breaks up from its sides, cells. */
@@ -247,8 +263,8 @@ static void stain_cell(const FlWetSheet *sheet, const FlFrontStyle *style, const
     cell->stain *= 1 - own, cell->film *= 1 - own;
     add_ink(cell, own * (stain + film), mark->ink, style->granulation);
     cell->stain += own * stain, cell->film += own * film;
-    cell->age = between(cell->age, mark->age, own);
-    cell->depth = between(cell->depth, mark->depth, own);
+    cell->age = fl_wet_between(cell->age, mark->age, own);
+    cell->depth = fl_wet_between(cell->depth, mark->depth, own);
 }
 
 void fl_wet_sheet_stain(FlWetSheet *sheet, const FlFrontStyle *style, const GArray *stains)
@@ -276,28 +292,12 @@ void fl_wet_sheet_wet(FlWetSheet *sheet, const FlFrontStyle *style, float frames
         cell->edge += new *MIN(mark->edge - cell->edge, 0);
         const float seen = 0.02f + 0.98f * fl_ease(-0.5f, 1, cell->edge); // a stain keeps its ink
         add_ink(cell, seen * more, mark->ink, style->granulation);
-        cell->line = between(cell->line, mark->line, more / (cell->front + more));
+        cell->line = fl_wet_between(cell->line, mark->line, more / (cell->front + more));
         cell->front += more;
     }
 }
 
 /* ---- the layer ------------------------------------------------------------------------------ */
-
-/** The contents of a cell, so that they can be mixed by shares. */
-typedef enum Channel {
-    FRONTS, // 1 where there is a front
-    FRONT,
-    EDGE,
-    LINE,   // times the front
-    STAINS, // 1 where there is a stain
-    STAIN,
-    FILM,
-    DEPTH,
-    AGE,         // times stain and film
-    GRANULATION, // times all paint, and so are
-    INK,         // three
-    N_CHANNELS = INK + 3,
-} Channel;
 
 /** Room for a thread: rows of cells, with two more at both ends. A row of px is done in turns: px 0
  * of all cells, then px 1. */
@@ -333,17 +333,11 @@ static FlColumns read_cells(const FlWetSheet *sheet, int y, float *const *to)
     const FlWetCell *cells = sheet->cell + (size_t)y * (size_t)n;
     FlColumns wet = {n, 0};
     for (int x = near.x; x < near.x + near.width; x++) {
-        const FlWetCell *cell = &cells[CLAMP(x, 0, n - 1)];
-        const float stain = cell->stain + cell->film, paint = stain + cell->front;
-        to[FRONTS][x] = cell->front > 0, to[STAINS][x] = stain > 0;
-        to[FRONT][x] = cell->front, to[EDGE][x] = cell->front > 0 ? cell->edge : -1;
-        to[LINE][x] = cell->front * cell->line;
-        to[STAIN][x] = cell->stain, to[FILM][x] = cell->film;
-        to[DEPTH][x] = stain > 0 ? cell->depth : -1;
-        to[AGE][x] = stain * cell->age, to[GRANULATION][x] = paint * cell->granulation;
-        for (int c = 0; c < 3; c++)
-            to[INK + c][x] = paint * cell->ink[c];
-        if (paint > 0)
+        float own[N_CHANNELS];
+        read_cell(&cells[CLAMP(x, 0, n - 1)], own);
+        for (int c = 0; c < N_CHANNELS; c++)
+            to[c][x] = own[c];
+        if (own[FRONTS] > 0 || own[STAINS] > 0)
             wet = (FlColumns){MIN(wet.first, x), x + 1};
     }
     return (FlColumns){MAX(wet.first - 1, -1), MIN(wet.last + 1, n + 1)};

@@ -6,6 +6,11 @@
 #include "compose/compose_input.h"
 #include "wet/fibres.h"
 
+static inline float fl_wet_between(float a, float b, float share)
+{
+    return a + share * (b - a);
+}
+
 /** A cell that a front wets. */
 typedef struct FlFrontMark {
     int32_t at;    // cell of the page
