@@ -334,7 +334,7 @@ static void splines_are_sampled_as_in_c(const void *version)
     }
 }
 
-enum { ROW = 200, LOOKS = 50 }; // the longest row
+enum { ROW = 200 }; // the longest row
 
 /* Matches of any angle and frame, in an exemplar of any size. */
 /* A patch of each, and what is around the target's; the weights of edge and past at their most. */
@@ -384,7 +384,7 @@ typedef struct Noise {
     int32_t seed[ROW + 16];
     uint32_t pixel[ROW + 16];
     uint8_t rgba[4 * ROW + 16];
-    uint32_t look[LOOKS], sum[4][ROW + 16];
+    uint32_t sum[4][ROW + 16];
     uint16_t above[ROW + 16];
     uint8_t area[ROW + 16];
     FlContourPiece piece[PIECES];
@@ -427,7 +427,7 @@ static void make_noise(Noise *noise, uint64_t seed)
         for (int i = 0; i < 2 * ROW + 16; i++) // some weights are 0
             noise->f[k][i] = (float)MAX((int)fl_rng_below(&rng, 5000) - 1000, 0) / 64;
     for (int i = 0; i < ROW + 16; i++) {
-        noise->s[0][i] = (int16_t)(fl_rng_below(&rng, LOOKS + 5) - 5);
+        noise->s[0][i] = (int16_t)(fl_rng_below(&rng, 55) - 5);
         for (int c = 0; c < 4; c++)
             noise->sum[c][i] = extreme ? 65535 * 255 : fl_rng_below(&rng, 65535 * 255 + 1);
     }
@@ -458,7 +458,6 @@ static void run_rows(const FlRowKernels *rows, Noise *z, int n, int at)
     rows->to_contour(&contour, z->f[3] + ROW + at, n);
     rows->over(z->pixel + at, &sums, n);
     rows->level_opaque(&sums, z->pixel + at, n);
-    rows->look_up(z->s[0] + at, z->look, z->sum[3] + at, n);
     const FlOcclusion layer = {z->rgba + at, z->rgba + ROW, n % 2 ? z->rgba + 3 : NULL, n,
                                n % 5 > 0};
     rows->occlude(&layer, z->sum[2] + at, z->above + at, z->area + at, n);
@@ -599,7 +598,6 @@ static void time_rows(const FlRowKernels *rows)
     TIME("near_below", rows->near_below(z.s[0], 9, z.s[1], ROW));
     const FlContourRow contour = contour_of(&z, 0);
     TIME("to_contour", rows->to_contour(&contour, z.f[3], ROW));
-    TIME("look_up", rows->look_up(z.s[0], z.look, z.sum[3], ROW));
     TIME("over", rows->over(z.pixel, &sums, ROW));
     TIME("level_opaque", rows->level_opaque(&sums, z.pixel, ROW));
     const FlOcclusion layer = {z.rgba, z.rgba + ROW, z.rgba + 2 * ROW, 200, true};

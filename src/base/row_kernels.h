@@ -82,9 +82,6 @@ typedef struct FlRowKernels {
      * neighbours along links, as long as it gets nearer. */
     void (*to_contour)(const FlContourRow *row, float *squared, int n);
 
-    /** Colourise: rgba[i] = colours[amount[i]], as 32 bits; 0 where the amount is negative. */
-    void (*look_up)(const int16_t *amount, const uint32_t *colours, uint32_t *rgba, int n);
-
     /** Composite: straight RGBA over the sums of fl_layers_compose(), each level times 257. */
     void (*over)(const uint32_t *rgba, const FlSums *sums, int n);
 

@@ -1,6 +1,5 @@
 #include "compose/colourise.h"
 #include "base/density.h"
-#include "base/row_kernels.h"
 #include "compose/colour_law.h"
 #include "compose/layer_blend.h"
 #include "compose/wash.h"
@@ -129,37 +128,6 @@ static void colour_amount(Fill *fill, const FlColouring *colouring, const FlTran
     colour_look(colouring, scale, look_of(fill, colouring, scale, amount), amount, play, rgba);
 }
 
-/** One fill for the whole region: each amount that it has is looked up. */
-static void colour_flat(const FlInk *ink, const FlColouring *colouring, const FlTransfer *scale,
-                        const int16_t *amounts, const FlArea *area, uint8_t *rgba)
-{
-    const size_t width = (size_t)area->box.width;
-    g_autofree uint32_t *colours = g_new(uint32_t, FL_AMOUNTS);
-    g_autofree bool *used = g_new0(bool, FL_AMOUNTS);
-    Fill fill;
-    for (int y = 0; y < area->box.height; y++) {
-        const FlColumns span = fl_area_row(area, y);
-        const int16_t *row = amounts + (size_t)y * width;
-        for (int x = span.first; x < span.last; x++)
-            if (row[x] >= 0)
-                used[row[x]] = true;
-    }
-    fill_init(&fill, ink, colouring, scale, colouring->fill);
-    for (int amount = 0; amount < FL_AMOUNTS; amount++) {
-        uint8_t rgba_of[4];
-        if (!used[amount])
-            continue;
-        colour_amount(&fill, colouring, scale, amount, 0, rgba_of);
-        memcpy(&colours[amount], rgba_of, 4);
-    }
-    for (int y = 0; y < area->box.height; y++) {
-        const FlColumns span = fl_area_row(area, y);
-        const size_t first = (size_t)y * width + (size_t)span.first;
-        fl_row_kernels()->look_up(amounts + first, colours, (uint32_t *)(void *)rgba + first,
-                                  span.last - span.first);
-    }
-}
-
 /** The most paint that a pixel of an area has; -1: no pixel has paint. */
 static int most_amount(const int16_t *amounts, const FlArea *area)
 {
@@ -176,13 +144,14 @@ static int most_amount(const int16_t *amounts, const FlArea *area)
 #define PLAYS 128 // as many plays of pigments are told apart: one in two
 #define AS_ONE 4  // amounts that look alike where pigments play
 
-/** The same where pigments play: each pair of an amount and a play is looked up once it was met. */
-static void colour_flat_play(const FlInk *ink, const FlColouring *colouring,
-                             const FlTransfer *scale, const int16_t *amounts, const FlArea *area,
-                             uint8_t *rgba)
+/** One fill for the whole region: each pair of an amount and a play is found once it is met. */
+static void colour_flat(const FlInk *ink, const FlColouring *colouring, const FlTransfer *scale,
+                        const int16_t *amounts, const FlArea *area, uint8_t *rgba)
 {
-    const size_t n_amounts = (size_t)(most_amount(amounts, area) / AS_ONE + 1);
-    const size_t n = n_amounts * PLAYS;
+    const bool plays = colouring->play != NULL;
+    const int as_one = plays ? AS_ONE : 1;
+    const size_t n_amounts = (size_t)(most_amount(amounts, area) / as_one + 1);
+    const size_t n = n_amounts * (plays ? PLAYS : 1);
     g_autofree uint32_t *colours = g_new(uint32_t, n); // set for the pairs in `met`
     g_autofree bool *met = g_new0(bool, n);
     g_autofree Look *looks = g_new(Look, n_amounts);
@@ -195,8 +164,8 @@ static void colour_flat_play(const FlInk *ink, const FlColouring *colouring,
         for (size_t i = row + (size_t)span.first; i < row + (size_t)span.last; i++) {
             if (amounts[i] < 0)
                 continue;
-            const int play = (colouring->play[i] + 128) * PLAYS / 256;
-            const int some = amounts[i] / AS_ONE, amount = some * AS_ONE;
+            const int play = plays ? (colouring->play[i] + 128) * PLAYS / 256 : 0;
+            const int some = amounts[i] / as_one, amount = some * as_one;
             const size_t at = (size_t)play * n_amounts + (size_t)some;
             if (!met[at]) {
                 uint8_t of[4];
@@ -341,8 +310,6 @@ void fl_colourise(const FlInk *ink, const FlColouring *colouring, const FlPainte
         keep_colours(ink, colouring, &scale, painted, amounts, area, rgba);
     else if (colouring->picture)
         colour_picture(ink, colouring, &scale, amounts, area, rgba);
-    else if (colouring->play)
-        colour_flat_play(ink, colouring, &scale, amounts, area, rgba);
     else
         colour_flat(ink, colouring, &scale, amounts, area, rgba);
     if (painted && painted->alpha)
