@@ -143,7 +143,8 @@ static void on_reads(const char *path, void *data)
 /* Makes frames of a Lottie animation, unless they are there; *input becomes their folder. */
 static bool make_frames(FlLiveFilm *film, char **input, GError **error)
 {
-    g_autofree char *folder = g_strconcat(*input, ".frames", NULL), *said = NULL;
+    g_autofree char *folder = g_strndup(*input, (gsize)(strrchr(*input, '.') - *input));
+    g_autofree char *said = NULL;
     g_autoptr(GSubprocess) process = NULL;
     if (!g_file_test(folder, G_FILE_TEST_IS_DIR)) {
         process =
