@@ -236,6 +236,9 @@ G_GNUC_NORETURN static void attend(FlProcess process)
     _exit(0);
 }
 
+const char fl_process_lacks[] =
+    "this process has threads, and so cannot start another one that could be confined";
+
 bool fl_process_may_fork(void)
 {
     g_autoptr(GDir) tasks = g_dir_open("/proc/self/task", 0, NULL);

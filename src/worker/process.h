@@ -38,6 +38,9 @@ typedef struct FlTicket {
     unsigned given_up; // of an answer: see FlSandbox
 } FlTicket;
 
+/** The reason why a process cannot be started. */
+extern const char fl_process_lacks[];
+
 /** True if this process has one thread, and so may fork. */
 bool fl_process_may_fork(void);
 

@@ -86,8 +86,7 @@ FlWorkers *fl_workers_new(const char *const *paths, FlSandboxing sandbox, bool a
     if (!apart || workers->orders || sandbox != FL_SANDBOXING_REQUIRE)
         return workers;
     g_free(workers);
-    g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                "‘sandbox’ require: this process has threads, and so cannot start another one");
+    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "‘sandbox’ require: %s", fl_process_lacks);
     return NULL;
 }
 
@@ -402,7 +401,7 @@ bool fl_workers_ask(FlWorkers *workers, const FlRequest *request, const FlFileWa
 const char *fl_workers_lack(const FlWorkers *workers)
 {
     if (!workers->orders)
-        return "this process has threads, and so cannot start another one that could be confined";
+        return fl_process_lacks;
     return atomic_load(&workers->answered) ? fl_sandbox_lacks(atomic_load(&workers->given_up))
                                            : NULL;
 }
