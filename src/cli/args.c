@@ -145,13 +145,12 @@ static gboolean read_map(const char *name, const char *value, gpointer data, GEr
 static gboolean read_preview(const char *name, const char *value, gpointer data, GError **error)
 {
     FlArgs *args = data;
-    char *end = NULL;
-    const gint64 number = g_ascii_strtoll(value, &end, 10);
-    if (!g_ascii_isdigit(*value) || *end || number > G_MAXINT / 2) {
+    int number;
+    if (!fl_text_integer(value, 0, G_MAXINT / 2, &number)) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s” is not a frame number", name, value);
         return FALSE;
     }
-    g_autofree char *range = g_strdup_printf("%s~1", value);
+    g_autofree char *range = g_strdup_printf("%d~1", number);
     args->preview = keep(args, range);
     return TRUE;
 }
@@ -213,15 +212,11 @@ static gboolean read_serve(const char *name, const char *value, gpointer data, G
 {
     FlArgs *args = data;
     const FlOption *option = option_named(name);
-    char *end = NULL;
-    const gint64 port = g_ascii_strtoll(value, &end, 10);
-    if (!g_ascii_isdigit(*value) || *end || port < (gint64)option->min ||
-        port > (gint64)option->max) {
+    if (!fl_text_integer(value, option->min, option->max, &args->port)) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s” is not a port from %g to %g", name,
                     value, option->min, option->max);
         return FALSE;
     }
-    args->port = (int)port;
     args->task = FL_COMMAND_SERVE;
     return TRUE;
 }

@@ -8,6 +8,7 @@
 #include "inspect/page_script.h"
 #include "inspect/stats.h"
 #include "io/atomic_file.h"
+#include "params/text.h"
 #include "style/resample.h"
 #include <errno.h>
 #include <fluidy/fluidy.h>
@@ -256,12 +257,6 @@ bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **erro
 
 /* ---- the whole ------------------------------------------------------------------------------ */
 
-static void write_colour(GString *json, const char *name, const uint8_t rgb[3])
-{
-    g_autofree char *text = g_strdup_printf("#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
-    fl_json_text(json, name, text);
-}
-
 static void write_region(const FlReport *report, GString *json, int r)
 {
     const FlShapes *shapes = report->shapes;
@@ -269,11 +264,12 @@ static void write_region(const FlReport *report, GString *json, int r)
     const int p = shapes->painted_of[r];
     uint8_t rgb[3];
     fl_region_colour(shapes->drawing, r, rgb);
+    g_autofree char *colour = fl_text_of_colour(rgb);
     fl_json_begin(json, NULL, '{');
     fl_json_text(json, "name", region->name);
     fl_json_text(json, "label", region->label);
     fl_json_text(json, "paint", region->paint);
-    write_colour(json, "colour", rgb);
+    fl_json_text(json, "colour", colour);
     fl_json_number(json, "area", region->area_px, true);
     fl_json_number(json, "present", region->n_present, true);
     fl_json_number(json, "painter", p, true);
@@ -300,11 +296,12 @@ static bool write_film(const FlReport *report, GError **error)
     const FlShapes *shapes = report->shapes;
     const double fps = report->outputs->fps;
     bool done = true;
+    g_autofree char *paper = fl_text_of_colour(report->background->flat);
     g_autoptr(GString) json = g_string_new("{");
     fl_json_text(json, "name", fl_drawing_name(shapes->drawing));
     fl_json_text(json, "output", report->outputs->output);
     fl_json_text(json, "version", fl_version());
-    write_colour(json, "paper", report->background->flat);
+    fl_json_text(json, "paper", paper);
     fl_json_number(json, "width", shapes->page_width, true);
     fl_json_number(json, "height", shapes->page_height, true);
     fl_json_number(json, "drawn", shapes->width, true);

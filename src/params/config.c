@@ -358,9 +358,7 @@ static bool read_files(FlConfig *config, const FlRenderOptions *caller, char **p
 {
     bool good = true;
     for (guint k = paths ? g_strv_length(paths) : 0; k-- > 0 && good;) {
-        g_autofree char *path = !folder || g_path_is_absolute(paths[k])
-                                    ? g_strdup(paths[k])
-                                    : g_build_filename(folder, paths[k], NULL);
+        g_autofree char *path = fl_text_path(paths[k], folder);
         good = read_file(config, caller, path, NULL, folder != NULL, error);
     }
     return good;

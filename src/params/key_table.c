@@ -191,12 +191,11 @@ static char *numbers_text(const FlTableKey *key, const void *field, int n, const
 char *fl_table_key_text(const FlTableKey *key, const void *object, int n, const char *format)
 {
     const void *const field = (const char *)object + key->offset;
-    const uint8_t *rgb = field;
     switch (key->type) {
     case FL_KEY_TEXT:
         return g_strdup(*(const char *const *)field);
     case FL_KEY_COLOUR:
-        return g_strdup_printf("#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+        return fl_text_of_colour(field);
     case FL_KEY_NUMBER:
     case FL_KEY_INTEGER:
         return numbers_text(key, field, n, format);

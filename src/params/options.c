@@ -302,12 +302,6 @@ static void set_text(const char **field, char *value, GPtrArray *strings)
     *field = value;
 }
 
-static char *path_from(const char *value, const char *folder)
-{
-    return !folder || g_path_is_absolute(value) ? g_strdup(value)
-                                                : g_build_filename(folder, value, NULL);
-}
-
 static bool set_ground(const FlOption *option, const char *value, const char *folder,
                        const char **field, GPtrArray *strings, GError **error)
 {
@@ -321,7 +315,7 @@ static bool set_ground(const FlOption *option, const char *value, const char *fo
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "“%s” is not a colour #RRGGBB", value);
         return false;
     }
-    set_text(field, word ? g_strdup(value) : path_from(value, folder), strings);
+    set_text(field, word ? g_strdup(value) : fl_text_path(value, folder), strings);
     return true;
 }
 
@@ -347,7 +341,7 @@ bool fl_option_set(const FlOption *option, const char *value, const char *folder
         set_text(field, g_strdup(value), strings);
         return true;
     case FL_OPTION_PATH:
-        set_text(field, path_from(value, folder), strings);
+        set_text(field, fl_text_path(value, folder), strings);
         return true;
     case FL_OPTION_GROUND:
         return set_ground(option, value, folder, field, strings, error);
@@ -400,9 +394,7 @@ static char *float_text(float number)
 
 static char *tint_text(const FlOption *option, const FlRegionSettings *t)
 {
-    return t->has_colour
-               ? g_strdup_printf("#%02x%02x%02x", t->colour[0], t->colour[1], t->colour[2])
-               : fl_text_word(option->value, (int)t->tint);
+    return t->has_colour ? fl_text_of_colour(t->colour) : fl_text_word(option->value, (int)t->tint);
 }
 
 const FlKeys *fl_option_keys(const FlOption *option, const FlRegionSettings *settings)

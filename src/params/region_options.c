@@ -79,13 +79,6 @@ static char *style_path(const char *value, const char *folder)
     return is_path ? g_steal_pointer(&path) : g_strdup(value);
 }
 
-static char *map_path(const char *value, const char *folder)
-{
-    return !*value                                ? NULL
-           : !folder || g_path_is_absolute(value) ? g_strdup(value)
-                                                  : g_build_filename(folder, value, NULL);
-}
-
 static bool set_tint(FlRegionSettings *settings, const char *value)
 {
     int tint = FL_TINT_FILL;
@@ -111,7 +104,7 @@ static bool store(FlRegionSettings *settings, const FlOption *option, const char
         replace_string(field, *value ? g_strdup(value) : NULL);
         return true;
     case FL_OPTION_MAP:
-        replace_string(field, map_path(value, folder));
+        replace_string(field, *value ? fl_text_path(value, folder) : NULL);
         return true;
     default:
         if (!fl_option_read(option, value, field))

@@ -67,3 +67,14 @@ char *fl_text_word(const char *form, int index)
     g_auto(GStrv) words = g_strsplit(form, "|", -1);
     return index >= 0 && index < (int)g_strv_length(words) ? g_strdup(words[index]) : NULL;
 }
+
+char *fl_text_path(const char *path, const char *folder)
+{
+    return !folder || g_path_is_absolute(path) ? g_strdup(path)
+                                               : g_build_filename(folder, path, NULL);
+}
+
+char *fl_text_of_colour(const uint8_t rgb[3])
+{
+    return g_strdup_printf("#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+}

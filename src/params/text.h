@@ -25,4 +25,10 @@ bool fl_text_choice(const char *text, const char *form, int *index);
 /** The reverse: a word of `form`, to be freed with g_free(); NULL if there are fewer. */
 char *fl_text_word(const char *form, int index);
 
+/** A path that starts in `folder` if it is relative; NULL: as it is. To be freed. */
+char *fl_text_path(const char *path, const char *folder);
+
+/** "#rrggbb", to be freed. */
+char *fl_text_of_colour(const uint8_t rgb[3]);
+
 #endif
