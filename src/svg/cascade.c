@@ -25,7 +25,7 @@ typedef struct Cascade {
     int number;
     FlWarnings *warnings;
     FlCssSheet *sheet;
-    GHashTable *rules; // FlSelector key -> GArray of indices into the sheet's rules
+    GHashTable *rules; // FlSelector key -> GPtrArray of FlCssRule
     FlSelectorWork work;
     GHashTable *said; // texts of the warnings that were given
     double seconds;   // the moment that is shown; NAN: animations are left out
@@ -76,7 +76,8 @@ static void warn_of_animation(Cascade *c, const char *value)
 {
     g_auto(GStrv) word = g_strsplit_set(value, " \t\r\n,", -1);
     for (int i = 0; word[i]; i++)
-        if (fl_css_sheet_keyframes(c->sheet, word[i]) && g_hash_table_add(c->said, g_strdup("@")))
+        if (g_hash_table_contains(c->sheet->keyframes, word[i]) &&
+            g_hash_table_add(c->said, g_strdup("@")))
             fl_warnings_add(c->warnings, c->path, c->number, NULL,
                             "the CSS animation is not played: the frame's own values are drawn");
 }
@@ -159,33 +160,22 @@ static void add_matches(Cascade *c, const xmlNode *node, const char *sigil, cons
                         GArray *matched)
 {
     g_autofree char *key = g_strconcat(sigil, name, NULL);
-    const GArray *indices = g_hash_table_lookup(c->rules, key);
-    const GArray *rules = fl_css_sheet_rules(c->sheet);
-    for (guint i = 0; indices && i < indices->len; i++) {
-        const FlCssRule *rule = &g_array_index(rules, FlCssRule, g_array_index(indices, guint, i));
+    const GPtrArray *rules = g_hash_table_lookup(c->rules, key);
+    for (guint i = 0; rules && i < rules->len; i++) {
+        const FlCssRule *rule = rules->pdata[i];
         if (fl_selector_matches(rule->selector, node, &c->work))
             g_array_append_val(matched, rule);
     }
 }
 
-static int compare_in_layer(const FlCssRule *p, const FlCssRule *q)
-{
-    const unsigned a = fl_selector_specificity(p->selector),
-                   b = fl_selector_specificity(q->selector);
-    return a != b ? (a > b) - (a < b) : (p->order > q->order) - (p->order < q->order);
-}
-
-static int compare_normal(const void *a, const void *b)
+/** Sorts rules by strength; of `important` declarations those of earlier layers win. */
+static int compare_rules(const void *a, const void *b, void *important)
 {
     const FlCssRule *p = *(const FlCssRule *const *)a, *q = *(const FlCssRule *const *)b;
-    return p->layer != q->layer ? p->layer - q->layer : compare_in_layer(p, q);
-}
-
-/** Of important declarations those of earlier layers win. */
-static int compare_important(const void *a, const void *b)
-{
-    const FlCssRule *p = *(const FlCssRule *const *)a, *q = *(const FlCssRule *const *)b;
-    return p->layer != q->layer ? q->layer - p->layer : compare_in_layer(p, q);
+    const unsigned one = p->selector->specificity, two = q->selector->specificity;
+    return p->layer != q->layer ? (p->layer < q->layer) == !important ? -1 : 1
+           : one != two         ? (one > two) - (one < two)
+                                : (p->order > q->order) - (p->order < q->order);
 }
 
 /** The rules that match an element, FlCssRule *; those of a copy match where it was copied from. */
@@ -193,7 +183,7 @@ static GArray *match(Cascade *c, const xmlNode *node)
 {
     GArray *matched = g_array_new(FALSE, FALSE, sizeof(const FlCssRule *));
     node = node->_private ? node->_private : node;
-    if (fl_css_sheet_rules(c->sheet)->len == 0)
+    if (c->sheet->rules->len == 0)
         return matched;
     g_autoptr(xmlChar) id = fl_attribute(node, "id");
     g_autoptr(xmlChar) class = fl_attribute(node, "class");
@@ -214,7 +204,7 @@ static GArray *declared_values(Cascade *c, const xmlNode *node, GArray *own)
     GArray *values = g_array_new(FALSE, FALSE, sizeof(Value));
     g_autoptr(GArray) matched = match(c, node);
     for (int important = 0; important < 2; important++) {
-        g_array_sort(matched, important ? compare_important : compare_normal);
+        g_array_sort_with_data(matched, compare_rules, GINT_TO_POINTER(important));
         for (guint i = 0; i < matched->len; i++)
             declare_all(c, values, g_array_index(matched, const FlCssRule *, i)->declarations,
                         important);
@@ -646,23 +636,17 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
 
 /* ---- the document ---------------------------------------------------------------------------- */
 
-static void index_free(void *data)
-{
-    g_array_unref(data);
-}
-
 /** Sorts rules by what an element must have to match them. */
 static GHashTable *index_rules(const GArray *rules)
 {
-    GHashTable *index = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, index_free);
+    GHashTable *index =
+        g_hash_table_new_full(g_str_hash, g_str_equal, NULL, (GDestroyNotify)g_ptr_array_unref);
     for (guint i = 0; i < rules->len; i++) {
-        const char *key = fl_selector_key(g_array_index(rules, FlCssRule, i).selector);
-        GArray *list = g_hash_table_lookup(index, key);
-        if (!list) {
-            list = g_array_new(FALSE, FALSE, sizeof(guint));
-            g_hash_table_insert(index, (gpointer)key, list);
-        }
-        g_array_append_val(list, i);
+        FlCssRule *rule = &g_array_index(rules, FlCssRule, i);
+        gpointer key = (gpointer)rule->selector->key;
+        if (!g_hash_table_contains(index, key))
+            g_hash_table_insert(index, key, g_ptr_array_new());
+        g_ptr_array_add(g_hash_table_lookup(index, key), rule);
     }
     return index;
 }
@@ -686,10 +670,10 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
                 GPtrArray *files, FlWarnings *warnings)
 {
     xmlNode *root = xmlDocGetRootElement(doc);
-    Style page = {.units = page_units(root), .colour = "black"};
-    const FlCssPage size = {page.units.page_width, page.units.page_height};
+    const FlCssUnits units = page_units(root);
+    const FlCssPage size = {units.page_width, units.page_height};
     g_autoptr(FlCssSheet) sheet = fl_css_sheet_take(doc, path, number, size, files, warnings);
-    g_autoptr(GHashTable) rules = index_rules(fl_css_sheet_rules(sheet));
+    g_autoptr(GHashTable) rules = index_rules(sheet->rules);
     g_autoptr(GHashTable) said = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
     Cascade c = {.doc = doc,
@@ -702,19 +686,12 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
                  .seconds = seconds,
                  .length = length,
                  .ids = ids};
-    const GArray *initial = fl_css_sheet_initial(sheet);
-    for (guint i = 0; i < initial->len; i++) {
-        const FlCssDeclaration *d = &g_array_index(initial, FlCssDeclaration, i);
-        if (!page.variables)
-            page.variables = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free);
-        g_hash_table_insert(page.variables, (gpointer)d->name, g_strdup(d->value));
-    }
-    page.own = fl_css_sheet_own(sheet);
     copy_shown(&c, root, NULL, 0);
-    visit(&c, root, &page);
-    fl_css_keep_strokes(root, &page.units);
+    visit(&c, root,
+          &(Style){
+              .variables = sheet->initial, .own = sheet->own, .units = units, .colour = "black"});
+    fl_css_keep_strokes(root, &units);
     if (c.work.steps > FL_SELECTOR_STEPS)
         fl_warnings_add(warnings, path, number, NULL,
                         "its selectors take too long to match; the rest of the styles is left out");
-    g_clear_pointer(&page.variables, g_hash_table_unref);
 }

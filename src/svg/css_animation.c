@@ -316,7 +316,7 @@ void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet
     for (int i = 0; animations->list[NAME] && animations->list[NAME][i]; i++) {
         g_autofree char *plain = fl_css_string_or_url(animations->list[NAME][i]);
         const GArray *frames =
-            fl_css_sheet_keyframes(sheet, plain ? plain : animations->list[NAME][i]);
+            g_hash_table_lookup(sheet->keyframes, plain ? plain : animations->list[NAME][i]);
         double p;
         if (!frames)
             continue;
@@ -327,7 +327,7 @@ void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet
         g_autoptr(GPtrArray) properties = properties_of(frames);
         for (guint k = 0; k < properties->len; k++) {
             const char *property = properties->pdata[k], *base = underlying(data, property);
-            const char *typed = find(fl_css_sheet_initial(sheet), property);
+            const char *typed = g_hash_table_lookup(sheet->initial, property);
             base = *base || !typed ? base : typed;
             const bool adds = strcmp(longhand(animations, COMPOSITION, i), "add") == 0 &&
                               strcmp(property, "transform") == 0;

@@ -39,12 +39,6 @@ typedef struct Compound {
     char combinator; // ' ', '>', '+', '~'; 0: it is the leftmost
 } Compound;
 
-struct FlSelector {
-    GArray *compound; // Compound, from left to right
-    unsigned specificity;
-    char *key;
-};
-
 static void simple_clear(void *data)
 {
     Simple *simple = data;
@@ -65,16 +59,6 @@ void fl_selector_free(FlSelector *selector)
     g_array_unref(selector->compound);
     g_free(selector->key);
     g_free(selector);
-}
-
-unsigned fl_selector_specificity(const FlSelector *selector)
-{
-    return selector->specificity;
-}
-
-const char *fl_selector_key(const FlSelector *selector)
-{
-    return selector->key;
 }
 
 /* ---- reading --------------------------------------------------------------------------------- */

@@ -5,7 +5,11 @@
 #include "svg/document.h"
 
 /** One complex selector, such as "g.arm > path:not(.line)". */
-typedef struct FlSelector FlSelector;
+typedef struct FlSelector {
+    GArray *compound;
+    unsigned specificity; // ids count 0x10000, classes and the like 0x100, names of elements 1
+    char *key; // of a match a necessary condition: "#id", ".class", the name of an element, or "*"
+} FlSelector;
 
 /**
  * Reads a list of selectors separated by commas.
@@ -16,15 +20,6 @@ typedef struct FlSelector FlSelector;
 GPtrArray *fl_selectors_parse(const char *text);
 
 void fl_selector_free(FlSelector *selector); // NULL is fine
-
-/** Ids count 0x10000, classes, attributes and pseudo-classes 0x100, names of elements 1. */
-unsigned fl_selector_specificity(const FlSelector *selector);
-
-/**
- * A necessary condition for a match: "#id", ".class" or the name of an element; "*" for all
- * elements. The string belongs to the selector.
- */
-const char *fl_selector_key(const FlSelector *selector);
 
 /** The work of matching, over a whole document. */
 typedef struct FlSelectorWork {

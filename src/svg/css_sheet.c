@@ -16,18 +16,9 @@
 typedef struct Layer {
     char *name;       // "" for one without a name
     GPtrArray *inner; // Layer, in the order in which they are first named
-    int id;           // index into FlCssSheet.layers
+    int id;           // index into Reader.layers
     int rank;
 } Layer;
-
-struct FlCssSheet {
-    GArray *rules;         // FlCssRule
-    GPtrArray *selectors;  // GPtrArray of FlSelector: owns them
-    GHashTable *keyframes; // name -> GArray of FlCssKeyframe
-    GArray *initial;       // FlCssDeclaration, of @property
-    GHashTable *own;       // names of @property that children do not inherit
-    GPtrArray *layers;     // Layer, the root first
-};
 
 /** The position of a block. */
 typedef struct Place {
@@ -45,6 +36,7 @@ typedef struct Reader {
     GPtrArray *files;
     FlWarnings *warnings;
     GHashTable *prefixes; // that @namespace gives to SVG
+    GPtrArray *layers;    // Layer, the root first
 } Reader;
 
 static void read_rules(Reader *reader, const char *css, const Place *place);
@@ -69,30 +61,30 @@ static void layer_free(void *data)
     g_free(layer);
 }
 
-static Layer *layer_new(FlCssSheet *sheet, Layer *around, const char *name)
+static Layer *layer_new(Reader *reader, Layer *around, const char *name)
 {
     Layer *layer = g_new0(Layer, 1);
     layer->name = g_strdup(name);
     layer->inner = g_ptr_array_new();
-    layer->id = (int)sheet->layers->len;
-    g_ptr_array_add(sheet->layers, layer);
+    layer->id = (int)reader->layers->len;
+    g_ptr_array_add(reader->layers, layer);
     if (around)
         g_ptr_array_add(around->inner, layer);
     return layer;
 }
 
 /** The layer of a name such as "base.reset" inside another; made if it is new, or has no name. */
-static Layer *layer_named(FlCssSheet *sheet, Layer *around, const char *name)
+static Layer *layer_named(Reader *reader, Layer *around, const char *name)
 {
     g_auto(GStrv) part = g_strsplit(name, ".", -1);
     if (!*name)
-        return layer_new(sheet, around, "");
+        return layer_new(reader, around, "");
     for (int i = 0; part[i]; i++) {
         Layer *found = NULL;
         for (guint k = 0; k < around->inner->len && !found; k++)
             if (strcmp(((Layer *)around->inner->pdata[k])->name, g_strstrip(part[i])) == 0)
                 found = around->inner->pdata[k];
-        around = found ? found : layer_new(sheet, around, part[i]);
+        around = found ? found : layer_new(reader, around, part[i]);
     }
     return around;
 }
@@ -257,11 +249,6 @@ static void keyframe_clear(void *data)
     g_array_unref(((FlCssKeyframe *)data)->declarations);
 }
 
-static void keyframes_free(void *data)
-{
-    g_array_unref(data);
-}
-
 /** Reads the block of @keyframes NAME. */
 static void read_keyframes(Reader *reader, const char *name, const char *block)
 {
@@ -296,11 +283,10 @@ static void read_property(Reader *reader, const char *name, const char *block)
     for (guint i = 0; i < list->len; i++) {
         const FlCssDeclaration *d = &g_array_index(list, FlCssDeclaration, i);
         if (strcmp(d->name, "inherits") == 0 && strcmp(d->value, "false") == 0)
-            g_hash_table_add(reader->sheet->own, g_strdup(name));
-        if (strcmp(d->name, "initial-value") != 0)
-            continue;
-        const FlCssDeclaration initial = {g_intern_string(name), g_strdup(d->value), false};
-        g_array_append_val(reader->sheet->initial, initial);
+            g_hash_table_add(reader->sheet->own, (gpointer)g_intern_string(name));
+        if (strcmp(d->name, "initial-value") == 0)
+            g_hash_table_replace(reader->sheet->initial, (gpointer)g_intern_string(name),
+                                 g_strdup(d->value));
     }
 }
 
@@ -313,18 +299,17 @@ static void read_file(Reader *reader, const char *href, const Place *place)
     size_t bytes = 0;
     if (file && !g_ptr_array_find_with_equal_func(reader->files, file, g_str_equal, NULL))
         g_ptr_array_add(reader->files, g_strdup(file));
-    if (!file || !is_there || !fl_file_check(file, FL_ERROR_INPUT, NULL) ||
-        !(g_str_has_suffix(lower, ".css") || strstr(lower, ".css?")) ||
-        !fl_reference_is_inside(reader->path, file) ||
-        !fl_file_read(file, LARGEST_BYTES, NULL, &css, &bytes, NULL)) {
-        warn(reader, "sheet", href,
-             !file                                        ? "is not in a file and is left out"
-             : !is_there                                  ? "does not exist and is left out"
-             : !fl_file_check(file, FL_ERROR_INPUT, NULL) ? "is a pipe or a device and is left out"
-             : !fl_reference_is_inside(reader->path, file)
-                 ? "is outside the drawing's folder and is left out"
-             : !strstr(lower, ".css") ? "is not a .css file and is left out"
-                                      : "cannot be read and is left out");
+    const char *why =
+        !file                                         ? "is not in a file"
+        : !is_there                                   ? "does not exist"
+        : !fl_file_check(file, FL_ERROR_INPUT, NULL)  ? "is a pipe or a device"
+        : !fl_reference_is_inside(reader->path, file) ? "is outside the drawing's folder"
+        : !g_str_has_suffix(lower, ".css") && !strstr(lower, ".css?")  ? "is not a .css file"
+        : !fl_file_read(file, LARGEST_BYTES, NULL, &css, &bytes, NULL) ? "cannot be read"
+                                                                       : NULL;
+    if (why) {
+        g_autofree char *text = g_strconcat(why, " and is left out", NULL);
+        warn(reader, "sheet", href, text);
         return;
     }
     g_autofree char *bare = fl_css_without_comments(css);
@@ -364,7 +349,7 @@ static void read_import(Reader *reader, const char *prelude, const Place *place)
         !fl_css_media_matches(rest, &reader->page))
         return;
     Place inside = *place;
-    inside.layer = layer ? layer_named(reader->sheet, place->layer, layer) : place->layer;
+    inside.layer = layer ? layer_named(reader, place->layer, layer) : place->layer;
     read_file(reader, href, &inside);
 }
 
@@ -384,11 +369,11 @@ static void read_layer(Reader *reader, const char *prelude, const char *block, c
     g_auto(GStrv) name = fl_css_split(prelude, ',');
     if (!block) {
         for (int i = 0; name[i]; i++)
-            layer_named(reader->sheet, place->layer, name[i]);
+            layer_named(reader, place->layer, name[i]);
         return;
     }
     Place inside = *place;
-    inside.layer = layer_named(reader->sheet, place->layer, name[0] ? name[0] : "");
+    inside.layer = layer_named(reader, place->layer, name[0] ? name[0] : "");
     read_group(reader, block, &inside);
 }
 
@@ -523,14 +508,6 @@ static void take_instructions(Reader *reader, xmlDoc *doc, const Place *place)
     }
 }
 
-/** Orders rules by their layers, which are known when all sheets are read. */
-static int compare_rules(const void *a, const void *b)
-{
-    const FlCssRule *p = a, *q = b;
-    return p->layer != q->layer ? (p->layer > q->layer) - (p->layer < q->layer)
-                                : (p->order > q->order) - (p->order < q->order);
-}
-
 FlCssSheet *fl_css_sheet_take(xmlDoc *doc, const char *path, int number, FlCssPage page,
                               GPtrArray *files, FlWarnings *warnings)
 {
@@ -538,21 +515,21 @@ FlCssSheet *fl_css_sheet_take(xmlDoc *doc, const char *path, int number, FlCssPa
     sheet->rules = g_array_new(FALSE, FALSE, sizeof(FlCssRule));
     g_array_set_clear_func(sheet->rules, rule_clear);
     sheet->selectors = g_ptr_array_new_with_free_func((GDestroyNotify)g_ptr_array_unref);
-    sheet->keyframes = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, keyframes_free);
-    sheet->initial = declarations_new();
-    sheet->own = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
-    sheet->layers = g_ptr_array_new_with_free_func(layer_free);
+    sheet->keyframes =
+        g_hash_table_new_full(g_str_hash, g_str_equal, g_free, (GDestroyNotify)g_array_unref);
+    sheet->initial = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free);
+    sheet->own = g_hash_table_new(g_str_hash, g_str_equal);
+    g_autoptr(GPtrArray) layers = g_ptr_array_new_with_free_func(layer_free);
     g_autoptr(GHashTable) prefixes = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
-    Reader reader = {sheet, path, number, page, files, warnings, prefixes};
-    const Place place = {path, NULL, layer_new(sheet, NULL, ""), 0};
+    Reader reader = {sheet, path, number, page, files, warnings, prefixes, layers};
+    const Place place = {path, NULL, layer_new(&reader, NULL, ""), 0};
     take_instructions(&reader, doc, &place);
     take_elements(&reader, xmlDocGetRootElement(doc), &place);
     rank_layers(place.layer, 0);
     for (guint i = 0; i < sheet->rules->len; i++) {
         FlCssRule *rule = &g_array_index(sheet->rules, FlCssRule, i);
-        rule->layer = ((const Layer *)sheet->layers->pdata[rule->layer])->rank;
+        rule->layer = ((const Layer *)layers->pdata[rule->layer])->rank;
     }
-    g_array_sort(sheet->rules, compare_rules);
     return sheet;
 }
 
@@ -561,30 +538,9 @@ void fl_css_sheet_free(FlCssSheet *sheet)
     if (!sheet)
         return;
     g_array_unref(sheet->rules);
-    g_array_unref(sheet->initial);
+    g_hash_table_unref(sheet->initial);
     g_hash_table_unref(sheet->own);
     g_ptr_array_unref(sheet->selectors);
     g_hash_table_unref(sheet->keyframes);
-    g_ptr_array_unref(sheet->layers);
     g_free(sheet);
-}
-
-const GArray *fl_css_sheet_rules(const FlCssSheet *sheet)
-{
-    return sheet->rules;
-}
-
-const GArray *fl_css_sheet_keyframes(const FlCssSheet *sheet, const char *name)
-{
-    return g_hash_table_lookup(sheet->keyframes, name);
-}
-
-const GArray *fl_css_sheet_initial(const FlCssSheet *sheet)
-{
-    return sheet->initial;
-}
-
-GHashTable *fl_css_sheet_own(const FlCssSheet *sheet)
-{
-    return sheet->own;
 }

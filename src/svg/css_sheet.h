@@ -26,7 +26,13 @@ typedef struct FlCssKeyframe {
 } FlCssKeyframe;
 
 /** All sheets of a document. */
-typedef struct FlCssSheet FlCssSheet;
+typedef struct FlCssSheet {
+    GArray *rules;         // FlCssRule
+    GPtrArray *selectors;  // GPtrArray of FlSelector: owns them
+    GHashTable *keyframes; // name -> GArray of FlCssKeyframe
+    GHashTable *initial;   // values of @property, interned name -> text
+    GHashTable *own;       // interned names of @property that children do not inherit
+} FlCssSheet;
 
 /**
  * Reads the <style> elements and <?xml-stylesheet?> of a document, with the files beside it that
@@ -39,19 +45,6 @@ FlCssSheet *fl_css_sheet_take(xmlDoc *doc, const char *path, int number, FlCssPa
                               GPtrArray *files, FlWarnings *warnings);
 
 void fl_css_sheet_free(FlCssSheet *sheet); // NULL is fine
-
-/** The rules, FlCssRule, from the weakest to the strongest layer, in each by their order. */
-const GArray *fl_css_sheet_rules(const FlCssSheet *sheet);
-
-/** The keyframes of that name, FlCssKeyframe in the order of the sheet; NULL for an unknown name.
- */
-const GArray *fl_css_sheet_keyframes(const FlCssSheet *sheet, const char *name);
-
-/** Initial values of @property, FlCssDeclaration. */
-const GArray *fl_css_sheet_initial(const FlCssSheet *sheet);
-
-/** The set of names of custom properties that children do not inherit. */
-GHashTable *fl_css_sheet_own(const FlCssSheet *sheet);
 
 /** Reads declarations, those of a style attribute; an array of FlCssDeclaration, to be unref'd. */
 GArray *fl_css_declarations(const char *text);
