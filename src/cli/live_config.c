@@ -74,22 +74,13 @@ static void set(char **text, const char *section, const char *key, const char *v
 
 /* ---- paths ---------------------------------------------------------------------------------- */
 
-/* True if the value of a background or paper option is a file, neither a colour nor a word. */
-static bool names_file(const FlOption *option, const char *value)
+/* The value as it reads in any folder. */
+static char *absolute(const FlOption *option, const char *value)
 {
-    g_autofree char *all = fl_option_words(option);
-    g_auto(GStrv) words = g_strsplit(all ? all : "", " ", -1);
-    return *value != '#' && !g_strv_contains((const char *const *)words, value);
-}
-
-/* The value as it reads in any folder; paths start in `folder`. */
-static char *absolute(const FlOption *option, const char *value, const char *folder)
-{
-    g_autofree char *path = g_canonicalize_filename(value, folder);
-    const bool is_path = (option->type == FL_OPTION_GROUND && names_file(option, value)) ||
-                         (option->type == FL_OPTION_STYLE &&
-                          (strchr(value, '/') || g_file_test(path, G_FILE_TEST_IS_DIR)));
-    return is_path ? g_steal_pointer(&path) : g_strdup(value);
+    const bool names_file = strchr(value, '/') || g_file_test(value, G_FILE_TEST_EXISTS);
+    const bool may = option->type == FL_OPTION_GROUND || option->type == FL_OPTION_STYLE;
+    const bool path = option->type == FL_OPTION_PATH || option->type == FL_OPTION_MAP;
+    return path || (may && names_file) ? g_canonicalize_filename(value, NULL) : g_strdup(value);
 }
 
 static const FlOption *option_of(const char *section, const char *key)
@@ -100,10 +91,9 @@ static const FlOption *option_of(const char *section, const char *key)
     return option && option->section == wanted ? option : NULL;
 }
 
-/* Paths of [project] are those of outputs. */
 static bool is_output(const FlOption *option)
 {
-    return option->scope == FL_SCOPE_RENDER && option->type == FL_OPTION_PATH;
+    return option->type == FL_OPTION_PATH && option->bytes == FL_BYTES_NEVER;
 }
 
 /* The config that choices are written into; a look is not, but included. */
@@ -144,7 +134,7 @@ static void add_command_line(char **text, const FlArgs *args)
     for (size_t k = 0; k < args->render.n_settings; k++) {
         const FlSetting *setting = &args->render.settings[k];
         const FlOption *option = option_of("defaults", setting->name);
-        g_autofree char *value = option ? absolute(option, setting->value, NULL) : NULL;
+        g_autofree char *value = option ? absolute(option, setting->value) : NULL;
         set(text, "defaults", setting->name, value ? value : setting->value);
     }
     for (int i = 0; i < fl_option_count(); i++) {
@@ -153,7 +143,7 @@ static void add_command_line(char **text, const FlArgs *args)
             is_output(option) || !fl_option_is_set(option, &args->render))
             continue;
         g_autofree char *given = fl_option_get(option, &args->render);
-        g_autofree char *value = absolute(option, given, NULL);
+        g_autofree char *value = absolute(option, given);
         set(text, "project", option->name, value);
     }
 }
@@ -246,10 +236,7 @@ void fl_live_config_free(FlLiveConfig *config)
 
 static bool is_plain(const char *text)
 {
-    for (; *text; text++)
-        if (g_ascii_iscntrl(*text))
-            return false;
-    return true;
+    return !g_regex_match_simple("[[:cntrl:]]", text, G_REGEX_RAW, 0);
 }
 
 static bool is_section(const char *section)

@@ -4,20 +4,12 @@
 #include <glib/gstdio.h>
 #include <string.h>
 
+#define KNOWN "^[^./[:cntrl:]][^/[:cntrl:]]{0,190}\\.(svgz?|css|json|lottie)$"
+
 struct FlLiveDrop {
     char *folder;
     char *inputs[2];
 };
-
-static bool is_name(const char *name)
-{
-    static const char *const known[] = {".svg", ".svgz", ".css", ".json", ".lottie"};
-    bool good = false;
-    for (size_t k = 0; k < G_N_ELEMENTS(known); k++)
-        good = good || g_str_has_suffix(name, known[k]);
-    return good && *name != '.' && !strchr(name, '/') && strlen(name) < 200 &&
-           g_utf8_validate(name, -1, NULL);
-}
 
 /* Writes a part of the form; the first one alone is the input. */
 static bool add_file(FlLiveDrop *drop, SoupMessageHeaders *headers, GBytes *body, GError **error)
@@ -28,7 +20,7 @@ static bool add_file(FlLiveDrop *drop, SoupMessageHeaders *headers, GBytes *body
     const char *data = g_bytes_get_data(body, &bytes), *name = NULL;
     if (soup_message_headers_get_content_disposition(headers, &disposition, &params))
         name = g_hash_table_lookup(params, "filename");
-    if (!name || !is_name(name)) {
+    if (!name || !g_regex_match_simple(KNOWN, name, 0, 0)) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
                     "%s: expected drawings, .svg or .svgz, and their style sheets, .css, or an "
                     "animation, .json or .lottie",

@@ -140,33 +140,28 @@ static void on_reads(const char *path, void *data)
 /* ---- a job ------------------------------------------------------------------------------------
  */
 
-/* Makes frames of a Lottie animation, unless they are there; *input becomes their folder. */
+/* Makes frames of a Lottie animation; *input becomes their folder. */
 static bool make_frames(FlLiveFilm *film, char **input, GError **error)
 {
     g_autofree char *folder = g_strndup(*input, (gsize)(strrchr(*input, '.') - *input));
     g_autofree char *said = NULL;
-    g_autoptr(GSubprocess) process = NULL;
-    if (!g_file_test(folder, G_FILE_TEST_IS_DIR)) {
-        process =
-            g_subprocess_new(G_SUBPROCESS_FLAGS_STDOUT_SILENCE | G_SUBPROCESS_FLAGS_STDERR_PIPE,
-                             error, "fluidy-frames", *input, "-o", folder, NULL);
-        if (!process) {
-            g_prefix_error(error,
-                           "frames of it are made by fluidy-frames; see fluidy-exports(7): ");
-            return false;
-        }
-        if (!g_subprocess_communicate_utf8(process, NULL, film->end, NULL, &said, error)) {
-            g_subprocess_send_signal(process, SIGTERM);
-            return false;
-        }
-        if (!g_subprocess_get_successful(process)) {
-            g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", g_strstrip(said));
-            return false;
-        }
+    g_autoptr(GSubprocess) process =
+        g_subprocess_new(G_SUBPROCESS_FLAGS_STDOUT_SILENCE | G_SUBPROCESS_FLAGS_STDERR_PIPE, error,
+                         "fluidy-frames", *input, "-o", folder, NULL);
+    if (!process) {
+        g_prefix_error(error, "frames of it are made by fluidy-frames; see fluidy-exports(7): ");
+        return false;
     }
-    g_free(*input);
-    *input = g_steal_pointer(&folder);
-    return true;
+    const bool ended = g_subprocess_communicate_utf8(process, NULL, film->end, NULL, &said, error);
+    if (!ended)
+        g_subprocess_send_signal(process, SIGTERM);
+    else if (!g_subprocess_get_successful(process))
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", g_strstrip(said));
+    else {
+        g_free(*input);
+        *input = g_steal_pointer(&folder);
+    }
+    return !folder;
 }
 
 static bool open_film(FlLiveFilm *film, GError **error)

@@ -80,10 +80,9 @@ static void tell(Live *live, const char *kind, const char *text)
 {
     char *json = object_of(kind, text);
     say_to_all(json, live);
-    if (live->messages->len < MOST_MESSAGES)
-        g_ptr_array_add(live->messages, json);
-    else
-        g_free(json);
+    g_ptr_array_add(live->messages, json);
+    if (live->messages->len > MOST_MESSAGES)
+        g_ptr_array_remove_index(live->messages, 0);
 }
 
 static void append_command(GString *json, const Live *live)
@@ -255,18 +254,18 @@ static void take_choice(Live *live, SoupWebsocketConnection *page, char **part)
 static void take_save(Live *live, SoupWebsocketConnection *page, char **part)
 {
     g_autoptr(GError) error = NULL;
-    const char *path = fl_live_config_path(live->config);
-    const bool saved = !live->drop && fl_live_config_save(live->config, *part[1] == '1', &error);
-    if (saved)
+    if (live->drop)
+        g_set_error(&error, FL_ERROR, FL_ERROR_USAGE,
+                    "the drawing was dropped here, so its folder is not known: download the "
+                    "config");
+    else if (fl_live_config_save(live->config, *part[1] == '1', &error))
         watch_anew(live); // so the saved file does not count as changed
+    const bool exists = g_error_matches(error, FL_ERROR, FL_ERROR_EXISTS);
     answer_page(page,
-                saved                                               ? "saved"
-                : g_error_matches(error, FL_ERROR, FL_ERROR_EXISTS) ? "exists"
-                                                                    : "unsaved",
-                saved        ? path
-                : live->drop ? "the drawing was dropped here, so its folder is not known: download "
-                               "the config"
-                             : error->message);
+                exists  ? "exists"
+                : error ? "unsaved"
+                        : "saved",
+                error ? error->message : fl_live_config_path(live->config));
 }
 
 /* Each part of a message is a line. */
@@ -421,17 +420,14 @@ static bool check_options(const FlArgs *args, GError **error)
     static const char *const others[] = {"output", "report",  "layers", "paint",  "stats",
                                          "dump",   "ebsynth", "merge",  "format", "no-frames",
                                          "resume", "dry-run", "watch",  NULL};
-    for (int i = 0; i < fl_option_count(); i++) {
-        const FlOption *option = fl_option_at(i);
-        if (option->scope != FL_SCOPE_RENDER || !fl_option_is_set(option, &args->render) ||
-            !g_strv_contains(others, option->name))
-            continue;
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "--serve and --%s contradict each other; the page shows the film and writes "
-                    "no frames",
-                    option->name);
-        return false;
-    }
+    for (const char *const *name = others; *name; name++)
+        if (fl_option_is_set(fl_option_find(FL_SCOPE_RENDER, *name), &args->render)) {
+            g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                        "--serve and --%s contradict each other; the page shows the film and "
+                        "writes no frames",
+                        *name);
+            return false;
+        }
     return true;
 }
 
@@ -444,11 +440,8 @@ static char *new_secret(GError **error)
                     g_strerror(errno));
         return NULL;
     }
-    GString *text = g_string_new("/");
-    for (size_t k = 0; k < sizeof bytes; k++)
-        g_string_append_printf(text, "%02x", bytes[k]);
-    g_string_append_c(text, '/');
-    return g_string_free(text, FALSE);
+    g_autofree char *digest = g_compute_checksum_for_data(G_CHECKSUM_SHA256, bytes, sizeof bytes);
+    return g_strdup_printf("/%.*s/", 2 * SECRET_BYTES, digest);
 }
 
 static void on_end(void *data, GObject *connection)

@@ -31,6 +31,7 @@ struct FlFilm {
     Take full, draft;
     FlComposite composite;
     uint8_t *drawing; // the last picture of fl_film_drawing() or fl_film_map()
+    bool maps;        // regions are drawn in the colours of the map
     GArray *regions;  // FlFilmRegion, of the last fl_film_regions()
     FlFilmInfo info;
     FlFilmFrame frame;
@@ -335,8 +336,8 @@ const FlFilmFrame *fl_film_draft(FlFilm *film, int frame, GError **error)
     return work_on(film, &film->draft, frame, make_frame, error) ? &film->frame : NULL;
 }
 
-/* The drawing in a frame into film->drawing, in its colours or in those of the map. */
-static bool draw_shapes(FlFilm *film, Take *take, int frame, bool map, GError **error)
+/* The drawing in a frame into film->drawing. */
+static bool draw_shapes(FlFilm *film, Take *take, int frame, GError **error)
 {
     const FlDrawing *drawing = take->frames.plan->shapes.drawing;
     const int width = fl_drawing_width(drawing), height = fl_drawing_height(drawing);
@@ -347,7 +348,7 @@ static bool draw_shapes(FlFilm *film, Take *take, int frame, bool map, GError **
     if (!rgba)
         return false;
     fl_draw_list_flat(draws, width, height, rgba);
-    if (map)
+    if (film->maps)
         fl_draw_list_map(drawing, draws, rgba);
     g_free(film->drawing);
     film->drawing = g_steal_pointer(&rgba);
@@ -355,24 +356,16 @@ static bool draw_shapes(FlFilm *film, Take *take, int frame, bool map, GError **
     return true;
 }
 
-static bool draw_plain(FlFilm *film, Take *take, int frame, GError **error)
-{
-    return draw_shapes(film, take, frame, false, error);
-}
-
-static bool draw_map(FlFilm *film, Take *take, int frame, GError **error)
-{
-    return draw_shapes(film, take, frame, true, error);
-}
-
 const FlFilmFrame *fl_film_drawing(FlFilm *film, int frame, GError **error)
 {
-    return work_on(film, &film->draft, frame, draw_plain, error) ? &film->frame : NULL;
+    film->maps = false;
+    return work_on(film, &film->draft, frame, draw_shapes, error) ? &film->frame : NULL;
 }
 
 const FlFilmFrame *fl_film_map(FlFilm *film, int frame, GError **error)
 {
-    return work_on(film, &film->draft, frame, draw_map, error) ? &film->frame : NULL;
+    film->maps = true;
+    return work_on(film, &film->draft, frame, draw_shapes, error) ? &film->frame : NULL;
 }
 
 const FlFilmRegion *fl_film_regions(FlFilm *film, int *n, GError **error)

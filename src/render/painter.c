@@ -135,20 +135,11 @@ static FlDigest made_of(const FlPainter *painter, const FlGuideSource *source,
 {
     const FlRegionSettings *settings = &painter->plan->settings;
     const FlFluidDials dials = fl_fluid_dials(settings);
-    const int how[] = {source->width,
-                       source->height,
-                       painter->result.rect.x,
-                       painter->result.rect.y,
-                       painter->result.rect.width,
-                       painter->result.rect.height,
-                       source->first,
-                       source->n_frames,
-                       painter->wrap,
-                       settings->hold,
-                       source->flow != NULL,
-                       source->motion != NULL};
+    const int how[] = {source->width,  source->first,        source->n_frames,      painter->wrap,
+                       settings->hold, source->flow != NULL, source->motion != NULL};
     FlDigest digest = {0};
     fl_digest_add(&digest, how, sizeof how);
+    fl_digest_add(&digest, &painter->result.rect, sizeof painter->result.rect);
     fl_digest_add(&digest, params, sizeof *params);
     fl_digest_add(&digest, &dials, sizeof dials);
     fl_digest_add(&digest, &settings->wetness, sizeof settings->wetness);
