@@ -240,6 +240,18 @@ void fl_guides_drop_motion(FlGuides *guides)
     g_clear_pointer(&guides->turn, g_free);
 }
 
+FlRect fl_guides_box(const FlGuides *guides, int least)
+{
+    int x0 = guides->width, y0 = guides->height, x1 = 0, y1 = 0;
+    for (int y = 0; y < guides->height; y++)
+        for (int x = 0; x < guides->width; x++)
+            if (guides->mask[(size_t)y * (size_t)guides->width + (size_t)x] >= least) {
+                x0 = MIN(x0, x), x1 = MAX(x1, x + 1);
+                y0 = MIN(y0, y), y1 = MAX(y1, y + 1);
+            }
+    return fl_rect_between(x0, y0, x1, y1);
+}
+
 void fl_guides_clear(FlGuides *guides)
 {
     g_free(guides->mask);

@@ -105,6 +105,9 @@ bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame);
 bool fl_guides_init(FlGuides *guides, int width, int height, GError **error);
 void fl_guides_clear(FlGuides *guides);
 
+/** The smallest rectangle of pixels whose coverage is at least `least`. */
+FlRect fl_guides_box(const FlGuides *guides, int least);
+
 /** Frees the flow and the drawing's motion, from which no target is made. */
 void fl_guides_drop_motion(FlGuides *guides);
 

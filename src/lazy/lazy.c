@@ -520,14 +520,6 @@ static void write_nothing(FlLazy *lazy, uint8_t *rgb, uint8_t *alpha)
     fl_lazy_state_forget(&lazy->last);
 }
 
-static bool is_empty(const FlLazy *lazy, const FlGuides *guides)
-{
-    for (size_t p = 0; p < (size_t)lazy->width * (size_t)lazy->height; p++)
-        if (guides->mask[p] >= FL_INSIDE)
-            return false;
-    return true;
-}
-
 /* Returns: true if the region rests. A video exemplar plays on while the drawing is held. */
 static bool holds_still(const FlLazy *lazy, const FlGuides *guides)
 {
@@ -542,7 +534,7 @@ static bool paint(FlLazy *lazy, FlGuides *guides, uint8_t *rgb, uint8_t *alpha, 
     clear_frame(lazy);
     lazy->last.frame++;
     lazy->weights = weights_of(lazy->params);
-    if (is_empty(lazy, guides)) {
+    if (fl_guides_box(guides, FL_INSIDE).width == 0) {
         write_nothing(lazy, rgb, alpha);
         return true;
     }

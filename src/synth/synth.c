@@ -69,19 +69,6 @@ void fl_synth_measure(FlSynth *synth, bool energies)
     synth->wants_energies = energies;
 }
 
-/* The bounding box of the mask. */
-static FlRect guided_box(const FlGuides *guides)
-{
-    int x0 = guides->width, y0 = guides->height, x1 = -1, y1 = -1;
-    for (int y = 0; y < guides->height; y++)
-        for (int x = 0; x < guides->width; x++)
-            if (guides->mask[(size_t)y * (size_t)guides->width + (size_t)x] >= FL_INSIDE) {
-                x0 = MIN(x0, x), x1 = MAX(x1, x);
-                y0 = MIN(y0, y), y1 = MAX(y1, y);
-            }
-    return fl_rect_between(x0, y0, x1 + 1, y1 + 1);
-}
-
 /* A bounding box, enlarged by the coarsest patches, on the coarsest grid. */
 static FlRect working_rect(const FlSynth *synth, FlRect box)
 {
@@ -343,7 +330,7 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
     forget_packed(synth);
     synth->moves = guides->has_motion && synth->params->carry > 0;
     fl_cost_scale_init(&synth->scale, synth->params);
-    const FlRect box = guided_box(guides);
+    const FlRect box = fl_guides_box(guides, FL_INSIDE);
     if (box.width == 0) {
         fill_paper(synth, rgb);
         synth->last.valid = false;

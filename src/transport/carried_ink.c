@@ -58,23 +58,6 @@ void fl_carried_ink_free(FlCarriedInk *ink)
     g_free(ink);
 }
 
-/* ---- the material ------------------------------------------------------------------------------
- */
-
-/* The rectangle of the mask; empty if the mask is. */
-static FlRect mask_rect(const FlGuides *guides)
-{
-    int x0 = guides->width, y0 = guides->height, x1 = 0, y1 = 0;
-    for (int y = 0; y < guides->height; y++)
-        for (int x = 0; x < guides->width; x++)
-            if (guides->mask[(size_t)y * (size_t)guides->width + (size_t)x]) {
-                x0 = MIN(x0, x), x1 = MAX(x1, x + 1);
-                y0 = MIN(y0, y), y1 = MAX(y1, y + 1);
-            }
-    const FlRect page = {0, 0, guides->width, guides->height};
-    return x1 > x0 ? fl_rect_grown((FlRect){x0, y0, x1 - x0, y1 - y0}, 2, page) : (FlRect){0};
-}
-
 /* ---- the velocity ------------------------------------------------------------------------------
  */
 
@@ -210,7 +193,10 @@ static bool advance(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, GErr
 bool fl_carried_ink_amounts(FlCarriedInk *ink, const FlGuides *guides, float *amount,
                             GError **error)
 {
-    const FlRect rect = mask_rect(guides);
+    const FlRect page = {0, 0, guides->width, guides->height};
+    FlRect rect = fl_guides_box(guides, 1);
+    if (rect.width > 0)
+        rect = fl_rect_grown(rect, 2, page);
     memset(amount, 0, (size_t)guides->width * (size_t)guides->height * sizeof *amount);
     return advance(ink, guides, rect, error) &&
            (rect.width == 0 || move_ink(ink, guides, rect, amount, error));
@@ -245,63 +231,54 @@ static_assert(sizeof(Header) == 20, "the header has no padding");
 /* The planes of the state, in the order of the bytes. Returns: their number. */
 static int kept_planes(FlMaterialLayers *layers, bool two, FlMaterial *kept[MOST_PLANES])
 {
-    int n = 0;
-    kept[n++] = &layers->old;
-    if (two)
-        kept[n++] = &layers->fresh, kept[n++] = &layers->share;
-    return n;
+    kept[0] = &layers->old, kept[1] = &layers->fresh, kept[2] = &layers->share;
+    return two ? MOST_PLANES : 1;
 }
 
 GBytes *fl_carried_ink_save(const FlCarriedInk *ink, GError **error)
 {
     FlMaterialLayers layers = ink->layers;
     const FlRect r = layers.old.rect;
-    const size_t plane = 2 * fl_rect_pixels(r) * sizeof(float);
+    const size_t n = 2 * fl_rect_pixels(r);
     FlMaterial *kept[MOST_PLANES];
     const int planes = kept_planes(&layers, layers.share.shift, kept);
     const Header header = {planes, r.x, r.y, r.width, r.height};
-    const size_t size = sizeof header + (size_t)planes * plane;
-    uint8_t *bytes = fl_alloc(size, 1, "the state of a region", error);
-    if (!bytes)
-        return NULL;
-    memcpy(bytes, &header, sizeof header);
-    for (int k = 0; k < planes && plane > 0; k++)
-        memcpy(bytes + sizeof header + (size_t)k * plane, kept[k]->shift, plane);
-    return g_bytes_new_with_free_func(bytes, size, free, bytes);
+    FlSpan parts[MOST_PLANES];
+    for (int k = 0; k < planes; k++)
+        parts[k] = (FlSpan){kept[k]->shift, n * sizeof(float)};
+    return fl_pack(&header, sizeof header, parts, n > 0 ? planes : 0, error);
 }
 
 /* Shifts are used as indices, so each must be a number that is not far off. */
-static bool load_plane(FlMaterial *material, FlRect rect, const uint8_t *bytes, float most,
-                       GError **error)
+static bool lies_near(const FlMaterial *material, float most, GError **error)
 {
-    const size_t n = 2 * fl_rect_pixels(rect);
-    if (!(material->shift = fl_alloc(n, sizeof(float), "a material", error)))
-        return false;
-    memcpy(material->shift, bytes, n * sizeof(float));
-    material->rect = rect;
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < 2 * fl_rect_pixels(material->rect); i++)
         if (!(fabsf(material->shift[i]) <= most))
             return fl_state_bytes_damaged("its material lies nowhere", error);
     return true;
 }
 
-static bool load_planes(FlCarriedInk *ink, const Header *h, const uint8_t *bytes, GError **error)
+static bool load_planes(FlCarriedInk *ink, const Header *h, GBytes *state, GError **error)
 {
     const FlRect rect = {h->x, h->y, h->width, h->height};
-    const size_t plane = 2 * fl_rect_pixels(rect) * sizeof(float);
+    const size_t n = 2 * fl_rect_pixels(rect);
     FlMaterial *kept[MOST_PLANES];
-    kept_planes(&ink->layers, h->planes > 1, kept);
-    for (int k = 0; k < h->planes; k++)
-        if (!load_plane(kept[k], rect, bytes + (size_t)k * plane,
-                        kept[k] == &ink->layers.share ? 1 : 1e7f, error))
+    FlSpan parts[MOST_PLANES];
+    const int planes = kept_planes(&ink->layers, h->planes > 1, kept);
+    for (int k = 0; k < planes; k++) {
+        *kept[k] = (FlMaterial){rect, fl_alloc(n, sizeof(float), "a material", error)};
+        if (!kept[k]->shift)
             return false;
-    return true;
+        parts[k] = (FlSpan){kept[k]->shift, n * sizeof(float)};
+    }
+    bool good = fl_state_bytes_parts(state, sizeof *h, parts, planes, error);
+    for (int k = 0; good && k < planes; k++)
+        good = lies_near(kept[k], kept[k] == &ink->layers.share ? 1 : 1e7f, error);
+    return good;
 }
 
 bool fl_carried_ink_load(FlCarriedInk *ink, GBytes *state, GError **error)
 {
-    size_t size;
-    const uint8_t *bytes = g_bytes_get_data(state, &size);
     Header h;
     fl_material_layers_clear(&ink->layers);
     if (!fl_state_bytes_header(state, &h, sizeof h, error))
@@ -311,10 +288,8 @@ bool fl_carried_ink_load(FlCarriedInk *ink, GBytes *state, GError **error)
                       h.x <= ink->input.width - h.width && h.y <= ink->input.height - h.height;
     if (!fits || (h.planes != 1 && h.planes != MOST_PLANES)) // two more are of a second layer
         return fl_state_bytes_damaged("its material lies outside the frame", error);
-    const size_t plane = 2 * fl_rect_pixels((FlRect){h.x, h.y, h.width, h.height}) * sizeof(float);
-    if (size != sizeof h + (size_t)h.planes * plane)
-        return fl_state_bytes_damaged("it has another size", error);
-    if (plane == 0 || load_planes(ink, &h, bytes + sizeof h, error))
+    if (fl_rect_pixels((FlRect){h.x, h.y, h.width, h.height}) == 0 ||
+        load_planes(ink, &h, state, error))
         return true;
     fl_material_layers_clear(&ink->layers);
     return false;
