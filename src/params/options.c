@@ -223,9 +223,9 @@ static bool read_word(const FlOption *option, const char *text, int *field)
 {
     int index = 0;
     bool on;
-    if (option->type == FL_OPTION_PASS && fl_text_bool(text, &on))
-        index = on ? FL_PASSTHROUGH_YES : FL_PASSTHROUGH_NO;
-    else if (!fl_text_choice(text, option->value, &index))
+    if (strstr(option->value, "off|on") && fl_text_bool(text, &on))
+        text = on ? "on" : "off";
+    if (!fl_text_choice(text, option->value, &index))
         return false;
     *field = first_word(option) + index;
     return true;
@@ -443,8 +443,6 @@ char *fl_option_get(const FlOption *option, const void *object)
     case FL_OPTION_WORD:
     case FL_OPTION_SWITCH:
     case FL_OPTION_CHOICE:
-    case FL_OPTION_DETAIL:
-    case FL_OPTION_PASS:
         return fl_text_word(option->value, *(const int *)field - first_word(option));
     case FL_OPTION_TEXT:
     case FL_OPTION_PATH:

@@ -109,7 +109,7 @@ static bool store(FlRegionSettings *settings, const FlOption *option, const char
     default:
         if (!fl_option_read(option, value, field))
             return false;
-        if (option->type == FL_OPTION_DETAIL)
+        if (option->offset == offsetof(FlRegionSettings, detail))
             fl_params_detail(&settings->params, settings->detail);
         return true;
     }

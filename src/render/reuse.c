@@ -135,7 +135,6 @@ void fl_reuse_next(FlReuse *reuse, int k, const FlGuides *guides, int window)
 {
     if (!reuse->cache)
         return;
-    reuse->n_done = (guint)k + 1;
     if (reuse->drafts) {
         reuse->last = draft_of(reuse, k);
         return;
@@ -212,9 +211,9 @@ void fl_reuse_keep(FlReuse *reuse, const uint8_t *rgb, size_t bytes, GBytes *sta
 
 void fl_reuse_finish(FlReuse *reuse)
 {
-    if (!reuse->cache || reuse->known || reuse->made->len != reuse->n_done)
+    if (!reuse->cache || reuse->known || reuse->drafts)
         return;
-    uint64_t n = reuse->n_done;
+    uint64_t n = reuse->made->len;
     const FlSpan film[] = {{&n, sizeof n},
                            {&reuse->rect, sizeof reuse->rect},
                            {reuse->made->data, n * sizeof(FlDigest)}};

@@ -26,7 +26,6 @@ typedef struct FlReuse {
     FlDigest last;       // of the picture painted or taken last
     GArray *made;        // of FlDigest: the pictures so far, where they follow from the guides
     GArray *known;       // of FlDigest: all pictures of the film; NULL: not known
-    guint n_done;        // pictures painted or taken, including earlier runs
     FlRect rect;         // the painter's, if known
     bool stale;          // a known picture is gone, so that this render cannot go on
     GBytes *state;       // after the last picture, which was taken; NULL: the engine has its own
