@@ -320,6 +320,7 @@ static void what_use_shows_has_the_variables_of_use(void)
         {"<use href='#p' style='--c:#333333'/>", "#333333"},
         {"<use href='#p' style='--c:initial'/>", "#111111"},
         {"<use href='#q' style='--c:#333333'/>", "#333333"},
+        {"<use href='#p' style='--c:context-stroke' stroke='#444444'/>", "#444444"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(uses); i++) {
         g_autoptr(Scratch) folder = scratch_make();

@@ -16,7 +16,8 @@ typedef struct Style {
     GHashTable *variables; // custom properties that are set here, name -> value; may be NULL
     GHashTable *own;       // names of those that children do not inherit; may be NULL
     FlCssUnits units;
-    const char *colour; // computed, of `color`
+    const char *colour;     // computed, of `color`
+    const xmlNode *context; // the <use> whose paints are context-fill and context-stroke; or NULL
 } Style;
 
 typedef struct Cascade {
@@ -319,6 +320,10 @@ static char *compute(Cascade *c, const char *name, const FlCssProperty *property
         (g_str_has_prefix(value, "ok") || g_str_has_prefix(value, "lab(") ||
          g_str_has_prefix(value, "lch(")))
         warn(c, name, value, "mixes in Oklab in a browser, which cannot be drawn");
+    if (style->context && property->kind == FL_CSS_PAINT && g_str_has_prefix(value, "context-")) {
+        char *paint = fl_inherited_property(style->context, value + 8);
+        return paint ? paint : g_strdup(strcmp(value + 8, "fill") == 0 ? "black" : "none");
+    }
     char *colour = property->kind == FL_CSS_PAINT ? fl_css_colour_with(value, style->colour) : NULL;
     char *word;
     switch (property->kind) {
@@ -498,12 +503,13 @@ static void copy_shown(Cascade *c, xmlNode *node, const Shown *around, int depth
     }
 }
 
-/** Makes a <use> with a copy of what it shows a group. */
-static void show_copy(const Cascade *c, xmlNode *use)
+/** Makes a <use> with a copy of what it shows a group. Returns: false if it is no such. */
+static bool show_copy(const Cascade *c, xmlNode *use)
 {
     xmlNode *copy = fl_is(use, "use") ? copy_in(use, fl_shown_by_use(use, c->ids)) : NULL;
     if (copy)
         fl_use_show(use, copy);
+    return copy != NULL;
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
@@ -604,8 +610,11 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     g_autoptr(GArray) values = declared_values(c, node, own);
     g_auto(FlCssEffects) effects = {0};
     g_autoptr(GPtrArray) owned = g_ptr_array_new_with_free_func(g_free);
-    Style style = {
-        .around = around, .own = around->own, .units = around->units, .colour = around->colour};
+    Style style = {.around = around,
+                   .own = around->own,
+                   .units = around->units,
+                   .colour = around->colour,
+                   .context = around->context};
     set_variables(&style, values);
     if (fl_is(node, "svg"))
         enter_viewport(&style, node);
@@ -624,7 +633,7 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     if (values->len > 0 || own->len > 0)
         fl_set_attribute(node, "style", text->str);
     g_string_free(text, TRUE);
-    show_copy(c, node);
+    style.context = show_copy(c, node) ? node : style.context;
     if (!fl_is(node, "foreignObject"))
         FL_EACH_ELEMENT (child, node)
             visit(c, child, &style);
