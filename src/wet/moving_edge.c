@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/curves.h"
 #include "base/density.h"
+#include "guides/distance.h"
 #include "guides/guides.h"
 #include "wet/fibres.h"
 #include <math.h>
@@ -52,7 +53,8 @@ static bool is_crossed(const FlWetShape *shape, int x, int y)
            (y + 1 < rect.height && (mask[rect.width] >= FL_INSIDE) != inside);
 }
 
-static void find_points(const FlWetShape *shape, GArray *points, int32_t *nearest)
+static void find_points(const FlWetShape *shape, const float *distance, GArray *points,
+                        int32_t *nearest)
 {
     const FlRect rect = shape->rect;
     for (int y = 0; y < rect.height; y++)
@@ -61,7 +63,7 @@ static void find_points(const FlWetShape *shape, GArray *points, int32_t *neares
             nearest[p] = -1;
             if (!is_crossed(shape, x, y) || !within_page(shape, x, y))
                 continue;
-            const FlEdgePoint point = {.x = (float)x, .y = (float)y};
+            const FlEdgePoint point = {.x = (float)x, .y = (float)y, .depth = distance[p]};
             nearest[p] = (int32_t)points->len;
             g_array_append_val(points, point);
         }
@@ -86,14 +88,6 @@ static void find_normal(const FlWetShape *shape, FlEdgePoint *point)
         }
     const float length = sqrtf(nx * nx + ny * ny) + 1e-6f;
     point->nx = nx / length, point->ny = ny / length;
-}
-
-/** The depth of a point's pixel below the edge, by its coverage. */
-static void find_depth(const FlWetShape *shape, FlEdgePoint *point)
-{
-    const float coverage = coverage_at(shape, (int)point->x, (int)point->y);
-    const float across = fabsf(point->nx) + fabsf(point->ny);
-    point->depth = (coverage - 0.5f) * MAX(across, 1);
 }
 
 /** Takes the point of another pixel if it is nearer. most: squared, 0: any distance. */
@@ -139,44 +133,22 @@ static void sweep(const FlMovingEdge *edge, const FlWetShape *shape, bool down)
     }
 }
 
-/** The distance of each pixel to where its nearest point says that the edge lies. */
-static void find_distances(const FlWetShape *shape, FlMovingEdge *edge)
-{
-    const FlRect rect = shape->rect;
-    const float deep = FL_WET_DEEP_PX * shape->px, far = (float)(rect.width + rect.height);
-    for (int y = 0; y < rect.height; y++)
-        for (int x = 0; x < rect.width; x++) {
-            const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
-            const bool inside = shape->now[p] >= FL_INSIDE;
-            edge->distance[p] = inside ? deep : -far;
-            if (edge->nearest[p] < 0)
-                continue;
-            const FlEdgePoint *point = &edge->point[edge->nearest[p]];
-            const float dx = (float)x - point->x - point->depth * point->nx;
-            const float dy = (float)y - point->y - point->depth * point->ny;
-            const float distance = sqrtf(dx * dx + dy * dy);
-            edge->distance[p] = inside ? distance : -distance;
-        }
-}
-
 bool fl_moving_edge_look(FlMovingEdge *edge, const FlWetShape *shape, GError **error)
 {
     const size_t n = fl_rect_pixels(shape->rect);
     *edge = (FlMovingEdge){.rect = shape->rect};
     if (!(edge->nearest = fl_alloc_unset(n, sizeof *edge->nearest, "an edge", error)) ||
-        !(edge->distance = fl_alloc_unset(n, sizeof *edge->distance, "an edge", error)))
+        !(edge->distance = fl_alloc_unset(n, sizeof *edge->distance, "an edge", error)) ||
+        !fl_distance(shape->now, shape->rect.width, shape->rect.height, edge->distance, error))
         return false;
     GArray *points = g_array_new(FALSE, TRUE, sizeof(FlEdgePoint));
-    find_points(shape, points, edge->nearest);
+    find_points(shape, edge->distance, points, edge->nearest);
     edge->n = (int)points->len;
     edge->point = (FlEdgePoint *)(void *)g_array_free(points, FALSE);
-    for (int i = 0; i < edge->n; i++) {
+    for (int i = 0; i < edge->n; i++)
         find_normal(shape, &edge->point[i]);
-        find_depth(shape, &edge->point[i]);
-    }
     sweep(edge, shape, true);
     sweep(edge, shape, false);
-    find_distances(shape, edge);
     return true;
 }
 
