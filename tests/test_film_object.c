@@ -379,6 +379,29 @@ static void a_frame_can_be_stopped_within(void)
     g_assert_cmpint(stop, >=, 6);
 }
 
+/* Also while guides are made, of its picture and then of the film. */
+static void a_draft_can_be_stopped_within(void)
+{
+    g_autoptr(Case) test = case_new();
+    bool whole = false;
+    int stop = 1;
+    for (; !whole; stop += 1 + stop / 4) {
+        g_autoptr(GError) error = NULL, none = NULL;
+        int left = stop;
+        const FlFilmCalls calls = {.size = sizeof calls, .stopped = count_down, .data = &left};
+        g_autofree char *value = g_strdup_printf("%g", 1 + stop / 100.0);
+        set(test->film, NULL, "flow-sigma", value);
+        fl_film_set_calls(test->film, &calls);
+        whole = fl_film_draft(test->film, 3, &error) && fl_film_draft(test->film, 4, &error);
+        left = 0;
+        g_assert_true(whole || g_error_matches(error, FL_ERROR, FL_ERROR_INTERRUPTED));
+        for (int f = 3; f < 5; f++)
+            g_assert_nonnull(fl_film_draft(test->film, f, &none));
+        g_assert_no_error(none);
+    }
+    g_assert_cmpint(stop, >=, 6);
+}
+
 static bool stop_at_guides(const FlProgress *progress, void *data)
 {
     const bool stops = *(bool *)data && g_str_equal(progress->stage, "guides");
@@ -479,6 +502,7 @@ int main(int argc, char **argv)
     TEST(a_config_of_text_reads_no_drawing_anew);
     TEST(a_config_file_is_read_again);
     TEST(a_frame_can_be_stopped_within);
+    TEST(a_draft_can_be_stopped_within);
     TEST(a_stop_before_the_paint_keeps_the_drawing);
     TEST(a_late_start_knows_the_paper);
     TEST(regions_and_drawings_are_told);
