@@ -512,6 +512,24 @@ static bool show_copy(const Cascade *c, xmlNode *use)
     return copy != NULL;
 }
 
+/** Moves what a <use> shows by its x and y, which come after its transform. */
+static void place_copy(xmlNode *use, const FlCssUnits *units)
+{
+    g_autoptr(xmlChar) x = fl_attribute(use, "x"), y = fl_attribute(use, "y");
+    double right = 0, down = 0;
+    if (x)
+        fl_css_number((const char *)x, units, units->width, &right);
+    if (y)
+        fl_css_number((const char *)y, units, units->height, &down);
+    const FlAffine own = fl_affine_of(use), move = {1, 0, 0, 1, right, down};
+    const FlAffine both = fl_affine_multiply(&own, &move);
+    g_autofree char *text = fl_affine_text(&both);
+    fl_set_attribute(use, "x", NULL);
+    fl_set_attribute(use, "y", NULL);
+    if (right != 0 || down != 0)
+        fl_set_attribute(use, "transform", text);
+}
+
 /* ---- writing --------------------------------------------------------------------------------- */
 
 /** Converts attributes that are properties as well, where librsvg would not understand them. */
@@ -633,11 +651,14 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     if (values->len > 0 || own->len > 0)
         fl_set_attribute(node, "style", text->str);
     g_string_free(text, TRUE);
-    style.context = show_copy(c, node) ? node : style.context;
+    const bool shows = show_copy(c, node);
+    style.context = shows ? node : style.context;
     if (!fl_is(node, "foreignObject"))
         FL_EACH_ELEMENT (child, node)
             visit(c, child, &style);
     const char *left_out = fl_css_effects_apply(&effects, node, &style.units, &c->n_clips);
+    if (shows)
+        place_copy(node, &style.units);
     if (left_out)
         warn(c, left_out, fl_css_effects_get(&effects, left_out), "cannot be drawn");
     g_clear_pointer(&style.variables, g_hash_table_unref);

@@ -155,28 +155,12 @@ static void show_copy(xmlNode *use, xmlNode *shown, const xmlChar *width, const 
     xmlAddChild(use, shown);
 }
 
-/** Moves by x and y, which may have units, by means of a nested <svg> of the same size. */
-static xmlNode *place(xmlNode *use, const xmlChar *x, const xmlChar *y)
-{
-    if (!x && !y)
-        return use;
-    xmlNode *svg = xmlNewChild(use, use->ns, (const xmlChar *)"svg", NULL);
-    fl_set_attribute(svg, "x", x ? (const char *)x : "0");
-    fl_set_attribute(svg, "y", y ? (const char *)y : "0");
-    fl_set_attribute(svg, "overflow", "visible");
-    return svg;
-}
-
 void fl_use_show(xmlNode *use, xmlNode *shown)
 {
-    for (int i = 0; i < 2; i++)
-        if (is_zero(use, i ? "y" : "x"))
-            fl_set_attribute(use, i ? "y" : "x", NULL);
-    g_autoptr(xmlChar) x = take(use, "x"), y = take(use, "y");
     g_autoptr(xmlChar) width = take(use, "width"), height = take(use, "height");
     xmlNodeSetName(use, (const xmlChar *)"g");
     xmlUnlinkNode(shown);
-    show_copy(place(use, x, y), shown, width, height);
+    show_copy(use, shown, width, height);
 }
 
 /** Of <use>, those are left that refer to another file, and those that show nothing. */
