@@ -185,7 +185,7 @@ static bool find_earlier(const Pair *pair, int then, FlRect part, float *earlier
     g_auto(Near) near = {0};
     memset(earlier, 0, fl_rect_pixels(part) * sizeof *earlier);
     if (rect.width == 0 || !fl_affine_invert(&rest_then, &back))
-        return true; // one of them was not there
+        return true; // one of them was missing
     if (!near_init(pair, then, rect, &near, error))
         return false;
     const FlAffine came = fl_affine_multiply(&back, &rest);

@@ -5,7 +5,7 @@
 #include "guides/blur.h"
 #include <math.h>
 
-#define THIN 0.65f // density of a front, as a share of that of the paint that it runs from
+#define THIN 0.65f // density of a front, as a share of the density of its paint
 
 /** The front of one region, planes of its rect. */
 typedef struct Front {

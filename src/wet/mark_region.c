@@ -190,7 +190,7 @@ static bool read_planes(const FlWetStep *step, FlMarker *marker, int before, int
            fl_wet_get_motion(wet, region, before, now, rect, planes->motion, error);
 }
 
-/** A region that is gone takes its fronts with it. */
+/** A region that is gone takes its fronts along. */
 static void forget(const FlWet *wet, FlMarker *marker)
 {
     const FlWetShape gone = {.page = wet->sheet.page};
@@ -200,7 +200,7 @@ static void forget(const FlWet *wet, FlMarker *marker)
     marker->rests = false;
 }
 
-/** A map of the page as one of a part of it. */
+/** Makes a map of the page one of the part `rect`. */
 static FlAffine within(const FlAffine *map, FlRect rect)
 {
     const FlPoint corner = fl_affine_apply(map, (FlPoint){rect.x, rect.y});

@@ -239,9 +239,9 @@ static void find_kept(const FlWetShape *shape, float pace_before, FlEdgePoint *p
                   (1 - fl_ease(1.3f, 2, shrunk / (moved + 3 * px)));
 }
 
-/** The paint seen some way inside, as it was laid in the frame before, there inside the nearest
- * edge if the shape has just come to here; none where a shape has faded. Below a shape that covers
- * it, paint keeps the ink it had. */
+/** The ink of the paint a little inside the edge, in the frame before; where the shape has just
+ * come, that is inside the nearest earlier edge. A shape that has faded has no ink; paint that
+ * another shape covers keeps its earlier one. */
 static void find_ink(const FlWetShape *shape, const FlMovingEdge *before, const FlEdgePoint *was,
                      FlEdgePoint *point)
 {

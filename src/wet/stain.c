@@ -133,7 +133,7 @@ static float recedes(const FlWetShape *shape, const FlEdgePoint *point)
     return 1 - fl_fall(point->receding / (2 * shape->frames * shape->px));
 }
 
-/** The stain begins below the rim of a receding edge, so that no bare paper shows there. */
+/** The stain begins below the rim of a receding edge, whose holes then show no bare paper. */
 static float under(const FlWetShape *shape, const FlEdgePoint *point)
 {
     return recedes(shape, point) * MIN(6 * shape->px, 0.4f * point->half_width);
@@ -177,8 +177,8 @@ void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
 }
 
 /** The share of an earlier front that stays where its edge goes back: below the shape as much as
- * the paper keeps of the paint that leaves, and none ahead of it, where no stain would be beside
- * it. */
+ * the paper keeps of its paint; ahead of the shape a front would stand alone as an arc, and goes.
+ */
 static float stays(const FlWetShape *shape, const FlMovingEdge *edge, int x, int y)
 {
     const FlRect rect = shape->rect;
