@@ -385,6 +385,8 @@ static void gaps_of_librsvg_are_filled(void)
                  "clip-path", "url(#e)"); // of the group around
     assert_value("<g id='a' opacity='.5' style='display:contents'><path/></g>", "opacity", "1");
     assert_value("<use id='a' style='width:9px'/>", "width", "");
+    assert_value("<path id='p'/><use id='a' href='#p' x='9' y='?' transform='scale(2)'/>",
+                 "transform", "matrix(2, 0, 0, 2, 18, 0)");
     assert_value("<svg id='a' style='height:9px'/>", "height", "");
     assert_value("<path id='a' fill='ActiveText'/>", "fill", "rgb(255, 0, 0)");
     assert_value("<path id='a' style='--c: ;stroke:var(--c, red)'/>", "stroke", "inherit");

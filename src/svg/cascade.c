@@ -516,11 +516,11 @@ static bool show_copy(const Cascade *c, xmlNode *use)
 static void place_copy(xmlNode *use, const FlCssUnits *units)
 {
     g_autoptr(xmlChar) x = fl_attribute(use, "x"), y = fl_attribute(use, "y");
-    double right = 0, down = 0;
-    if (x)
-        fl_css_number((const char *)x, units, units->width, &right);
-    if (y)
-        fl_css_number((const char *)y, units, units->height, &down);
+    double right, down;
+    if (!x || !fl_css_number((const char *)x, units, units->width, &right))
+        right = 0;
+    if (!y || !fl_css_number((const char *)y, units, units->height, &down))
+        down = 0;
     const FlAffine own = fl_affine_of(use), move = {1, 0, 0, 1, right, down};
     const FlAffine both = fl_affine_multiply(&own, &move);
     g_autofree char *text = fl_affine_text(&both);
