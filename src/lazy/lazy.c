@@ -255,16 +255,14 @@ static bool start_field(FlLazy *lazy, int l, uint64_t key, GError **error)
     return true;
 }
 
-/* Clears a row where there is no fluid: patches of the fluid's edge, which reach out to there, may
- * bring specks. */
-static void clear_outside(const FlExemplar *exemplar, const FlNnf *nnf, int y, float *rgba)
+/* Fills pixels without votes with bare paper. */
+static void fill_paper(const FlExemplar *exemplar, int pixels, float *rgba)
 {
-    for (int x = 0; x < nnf->width; x++)
-        if (nnf->match[y * nnf->width + x].frame == FL_NO_MATCH) {
-            for (int c = 0; c < 3; c++)
-                rgba[4 * x + c] = exemplar->cut_out ? 0 : exemplar->paper[c] / 255.0f;
-            rgba[4 * x + 3] = 0;
-        }
+    for (int p = 0; p < pixels; p++) {
+        for (int c = 0; c < 3; c++)
+            rgba[4 * p + c] = exemplar->cut_out ? 0 : exemplar->paper[c] / 255.0f;
+        rgba[4 * p + 3] = 0;
+    }
 }
 
 /*
@@ -310,11 +308,11 @@ static void vote(const FlLazy *lazy, int l, const FlFluidPlanes *past, uint16_t 
         g_autofree float *strip = g_new(float, 4 * (size_t)width * FL_VOTE_ROWS);
 #pragma omp for schedule(dynamic, 1)
         for (int first = 0; first < height; first += FL_VOTE_ROWS) {
+            fill_paper(lazy->exemplar, width * FL_VOTE_ROWS, strip);
             fl_vote_rows(&level->nnf, &lazy->source.level[l].voted, &lazy->kernels,
                          lazy->params->vote_sharpness, 4, first, strip);
             for (int y = first; y < MIN(first + FL_VOTE_ROWS, height); y++) {
                 float *rgba = strip + 4 * (size_t)width * (size_t)(y - first);
-                clear_outside(lazy->exemplar, &level->nnf, y, rgba);
                 if (past && past->plane[FL_FLUID_PLANE_WEIGHT])
                     start_from_past(past, y, rgba);
                 take_row(level, rgba, y, output);
@@ -487,18 +485,38 @@ static uint8_t straight(const uint16_t *rgba, int c, uint8_t paper)
     return alpha > 0 ? (uint8_t)((value * 255 + alpha / 2) / alpha) : paper;
 }
 
+/* The last output without specks beside the fluid, which come from patches of its edge. The next
+ * frame is warped from the one with them, whose edge is not mixed with paper. */
+static uint16_t *without_specks(const FlLazy *lazy, GError **error)
+{
+    const FlExemplar *exemplar = lazy->exemplar;
+    const FlFluidPast *past = &lazy->last.past;
+    const size_t pixels = (size_t)lazy->width * (size_t)lazy->height;
+    uint16_t *rgba = fl_alloc(4 * pixels, sizeof *rgba, "a picture", error);
+    for (size_t p = 0; rgba && p < pixels; p++) {
+        if (past->nnf.match[p].frame != FL_NO_MATCH)
+            memcpy(rgba + 4 * p, past->rgba + 4 * p, 4 * sizeof *rgba);
+        else
+            for (size_t c = 0; c < 3 && !exemplar->cut_out; c++)
+                rgba[4 * p + c] = (uint16_t)(257 * exemplar->paper[c]);
+    }
+    return rgba;
+}
+
 /* The last output, blurred along the motion where that is asked for. */
 static bool write_output(const FlLazy *lazy, uint8_t *rgb, uint8_t *alpha, GError **error)
 {
     const size_t pixels = (size_t)lazy->width * (size_t)lazy->height;
     const float shutter = lazy->params->motion_blur;
-    g_autofree uint16_t *blurred = NULL;
+    g_autofree uint16_t *shown = without_specks(lazy, error), *blurred = NULL;
+    if (!shown)
+        return false;
     if (shutter > 0 && lazy->motion) {
-        if (!(blurred = fl_motion_blur(lazy->last.past.rgba, lazy->motion, lazy->width,
-                                       lazy->height, lazy->exemplar->cut_out, shutter, error)))
+        if (!(blurred = fl_motion_blur(shown, lazy->motion, lazy->width, lazy->height,
+                                       lazy->exemplar->cut_out, shutter, error)))
             return false;
     }
-    const uint16_t *rgba = blurred ? blurred : lazy->last.past.rgba;
+    const uint16_t *rgba = blurred ? blurred : shown;
     for (size_t p = 0; p < pixels; p++) {
         for (size_t c = 0; c < 3; c++)
             rgb[3 * p + c] = lazy->exemplar->cut_out
