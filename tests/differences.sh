@@ -13,7 +13,7 @@ blend-in-a-masked-group 1
 blend-in-an-isolated-group 2
 blend-of-a-group 2
 clip-by-a-hidden-box 1
-context-paint 1
+context-paint 3
 elements-from-an-entity 1
 filter-of-a-group 2
 filter-of-the-background 3
@@ -28,7 +28,7 @@ sheet-from-a-file 2
 switch-by-an-empty-extension 2
 use-below-a-descendant-selector 3
 use-of-a-symbol-with-a-transform 2
-use-of-an-svg 2
+use-of-an-svg 3
 EOF
 }
 
