@@ -52,9 +52,9 @@ typedef struct Tones {
     int8_t play[W * H];
 } Tones;
 
-/* The recording's amounts are off by `uneven` to both sides of the fill's, line by line. */
 static uint64_t film_seed = 1;
 
+/* The recording's amounts are off by `uneven` to both sides of the fill's, line by line. */
 static Tones *lay_frame_of(const FlDrawing *drawing, int frame, const FlWashStyle *style,
                            int uneven)
 {
@@ -517,9 +517,9 @@ static void fronts_have_teeth(void)
     }
 }
 
-/* Passes of the brush go over into each other without a step where they meet by their numbers, and
- * slopes of the tone are ragged. */
-static void passes_and_slopes_are_ragged(void)
+/* Wet passes of the brush go over into each other without a step, and slopes of the tone are
+ * ragged. */
+static void passes_are_soft_and_slopes_ragged(void)
 {
     for (int rough = 0; rough < 2; rough++) {
         Row row = {0};
@@ -533,6 +533,44 @@ static void passes_and_slopes_are_ragged(void)
         g_test_message("steps up to %.3f", (double)most_step(&row));
         g_assert_true(rough ? most_step(&row) > .06f : most_step(&row) < .04f);
     }
+}
+
+/* The ragged edge of a dry pass, at a row of points along it. */
+static void dry_passes_have_ragged_edges(void)
+{
+    Row row = {0};
+    for (int i = 0; i < ROW; i++) {
+        row.values[FL_WASH_PASS][i] = .985f, row.values[FL_WASH_LINES][i] = 1;
+        row.values[FL_WASH_X][i] = (float)i, row.values[FL_WASH_DRY][i] = 1;
+        row.values[FL_WASH_FRONT][i] = 1000;
+    }
+    find_row(&row);
+    g_test_message("steps up to %.3f", (double)most_step(&row));
+    g_assert_cmpfloat(most_step(&row), >, .05f);
+}
+
+/* The least tone of a dry page of a side, whose brush skips islands of paper if it is large. */
+static float least_tone(int side)
+{
+    static const FlWashStyle dry = {.wash = 1, .passes = 1};
+    float least = 0;
+    for (int k = 0; k < 8; k++) {
+        g_autofree char *page = g_strdup_printf("<path fill='#%06x' d='M10 10h%dv%dh-%dz'/>",
+                                                0x203050 + k, side, side, side);
+        g_autofree Tones *tones = lay_still(page, &dry, 0);
+        for (int i = 0; i < W * H; i++)
+            if (tones->tone[i] > BARE)
+                least = MIN(least, tones->tone[i]);
+    }
+    return least;
+}
+
+/* In small shapes they would look like scratches. */
+static void large_shapes_alone_have_islands(void)
+{
+    g_test_message("down to %.2f, in a small shape %.2f", least_tone(280), least_tone(120));
+    g_assert_cmpfloat(least_tone(280), <, -1);
+    g_assert_cmpfloat(least_tone(120), >, -.7);
 }
 
 /* Parts of a fill that move apart: no line where one's wash passes into the other's. */
@@ -597,22 +635,31 @@ static void a_heart_is_light(void)
 }
 
 /* Drops fall into some of eight pages: of water, which is light within its rim, and of paint. */
-static void drops_leave_light_and_dark_spots(void)
+/* The pixels that drops make lighter, and darker, on eight pages of fills a step apart. */
+static void count_spots(int fill, int step, int *light, int *dark)
 {
     static const FlWashStyle wet = {.wash = 1, .blooms = 1}, even = {.wash = 1};
-    int light = 0, dark = 0;
     for (int k = 0; k < 8; k++) {
         g_autofree char *page =
-            g_strdup_printf("<path id='p%d' fill='#%02x80c0' d='M0 0h400v300h-400z'/>", k, 30 * k);
+            g_strdup_printf("<path fill='#%06x' d='M0 0h400v300h-400z'/>", fill + k * step);
         g_autofree Tones *drops = lay_still(page, &wet, 0), *none = lay_still(page, &even, 0);
         for (int i = 0; i < W * H; i++) {
-            light += drops->tone[i] < none->tone[i] - .08f;
-            dark += drops->tone[i] > none->tone[i] + .08f;
+            *light += drops->tone[i] < none->tone[i] - .08f;
+            *dark += drops->tone[i] > none->tone[i] + .08f;
         }
     }
-    g_test_message("%d px are lighter, %d darker", light, dark);
+}
+
+static void drops_leave_light_and_dark_spots(void)
+{
+    int light = 0, dark = 0, light_in_white = 0, dark_in_white = 0;
+    count_spots(0x0080c0, 0x1e0000, &light, &dark);
+    count_spots(0xffffff, -1, &light_in_white, &dark_in_white);
+    g_test_message("%d px are lighter, %d darker; %d and %d in white", light, dark, light_in_white,
+                   dark_in_white);
     g_assert_cmpint(light, >, 10000);
     g_assert_cmpint(dark, >, 3000);
+    g_assert_cmpint(dark_in_white, <, dark / 2); // paint would look like dirt
 }
 
 static void threads_and_parts_do_not_matter(void)
@@ -827,7 +874,9 @@ int main(int argc, char **argv)
                     a_gradient_has_the_fill_of_its_body);
     g_test_add_func("/wash/a-front-parts-two-tones", a_front_parts_two_tones);
     g_test_add_func("/wash/fronts-have-teeth", fronts_have_teeth);
-    g_test_add_func("/wash/passes-and-slopes-are-ragged", passes_and_slopes_are_ragged);
+    g_test_add_func("/wash/passes-are-soft-and-slopes-ragged", passes_are_soft_and_slopes_ragged);
+    g_test_add_func("/wash/dry-passes-have-ragged-edges", dry_passes_have_ragged_edges);
+    g_test_add_func("/wash/large-shapes-alone-have-islands", large_shapes_alone_have_islands);
     g_test_add_func("/wash/parts-that-move-apart-are-mixed", parts_that_move_apart_are_mixed);
     g_test_add_func("/wash/dots-and-lines-have-none", dots_and_lines_have_none);
     g_test_add_func("/wash/a-calm-wash-keeps-some-of-the-rim", a_calm_wash_keeps_some_of_the_rim);

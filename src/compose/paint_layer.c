@@ -38,16 +38,9 @@ FlStacking fl_stacking_of(const FlPaintedRegion *painted)
 /* The share by which a fill is the bare paper, 0..1, with a wash that is no more than a shadow. */
 static float whiteness_of(const FlColouring *colouring, const FlWash *wash)
 {
-    const float fill[3] = {colouring->fill[0], colouring->fill[1], colouring->fill[2]};
-    const float paper[3] = {colouring->paper[0], colouring->paper[1], colouring->paper[2]};
-    float lab[3], ground[3];
     if (!wash || colouring->picture)
         return 0;
-    fl_lab(fill, lab);
-    fl_lab(paper, ground);
-    const float chroma = sqrtf(lab[1] * lab[1] + lab[2] * lab[2]);
-    return CLAMP((lab[0] - 84) / 8, 0, 1) * CLAMP((16 - chroma) / 10, 0, 1) *
-           CLAMP((ground[0] - 75) / 10, 0, 1) * MIN(wash->style.wash, 1);
+    return fl_whiteness(colouring->fill, colouring->paper) * MIN(wash->style.wash, 1);
 }
 
 /* The two pigments of a fill, of which the second one prevails in the shadow; in white the shadow

@@ -29,6 +29,7 @@ typedef struct FlWash {
     uint64_t key;                   // of the film's seed and the fill
     float brush_px;                 // width of a pass, px of the page
     float along[2];                 // vector along the passes
+    float islands;                  // share of the islands of paper that a dry brush skips
     FlRect box;                     // px of the frame
     int step;                       // px of the frame from point to point
     int width, height;              // points; the first is at the corner of the box
@@ -59,6 +60,9 @@ static inline const FlWash *fl_wash_of_draw(const FlWashes *washes, int draw)
 
 /** The strengths of the wash of a painted region: those of its settings, else its style's. */
 FlWashStyle fl_wash_style_of(const FlPaintedRegion *painted);
+
+/** The share by which a fill is white as bare paper, 0..1. */
+float fl_whiteness(const uint8_t fill[3], const uint8_t paper[3]);
 
 /** The ln of the factor on amounts and the balance of the pigments at each point of a wash of
  * strength 1. */

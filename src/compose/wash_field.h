@@ -21,6 +21,7 @@ typedef struct FlWashField {
     FlWash *wash;
     const FlComposeInput *input;
     float size;      // of its shapes through the film
+    float drops;     // strength of drops of paint
     float light[2];  // unit vector to the side of the shadow
     float across[2]; // vector across the passes of the brush
     FlWashPart *part;

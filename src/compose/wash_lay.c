@@ -125,7 +125,7 @@ static inline float load_at(const Brush *brush, const Slow slow, float ragged)
     const float hairs = ragged_at(brush, slow[FL_WASH_PASS] * wash->brush_px, .08f * along);
     const float held = load[0] + (load[1] - load[0]) * next, lines = slow[FL_WASH_LINES];
     const float skipped = fl_smooth(-1.5f * held - .4f) * fl_smooth(4 * (hairs + ragged) - 4.4f);
-    return lines * (held + dry * (.6f * hairs - 5 * lines * lines * skipped));
+    return lines * (held + dry * (.6f * hairs - 5 * wash->islands * lines * lines * skipped));
 }
 
 /* The ln of the factor on the amount by a wash of strength 1, and the balance of the pigments, at a

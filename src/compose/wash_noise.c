@@ -200,8 +200,9 @@ static void find_fronts(const FlWash *wash, const Places *at, Values values)
 }
 
 /* Drops of paint that ran into the wash. */
-static void add_drops(const FlWash *wash, const Places *at, Values values)
+static void add_drops(const FlWashField *field, const Places *at, Values values)
 {
+    const FlWash *wash = field->wash;
     static const float lobes[2] = {40, 26};
     float bend[FL_NOISE_ROW];
     noise_at(fl_key(wash->key, KEY_BLOOM + 100), at, lobes, 0, 2, .6f, bend);
@@ -211,7 +212,7 @@ static void add_drops(const FlWash *wash, const Places *at, Values values)
                           .6f * bend[i];
         if (drop.kind < .3f || drop.kind > .55f)
             continue;
-        const float paint = wash->style.blooms * fl_smooth(1.2f - far);
+        const float paint = field->drops * fl_smooth(1.2f - far);
         values[FL_WASH_TONE][i] += 1.2f * paint;
         values[FL_WASH_HUE][i] += paint;
     }
@@ -225,7 +226,7 @@ static void find_values(const FlWashField *field, const Places *at, Values value
     noise_at(fl_key(wash->key, KEY_HUE), at, hue, .5f, 3, .55f, values[FL_WASH_HUE]);
     find_passes(field, at, values);
     find_fronts(wash, at, values);
-    add_drops(wash, at, values);
+    add_drops(field, at, values);
 }
 
 static bool is_mixed(int plane)

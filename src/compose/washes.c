@@ -1,3 +1,4 @@
+#include "base/colour_difference.h"
 #include "base/error.h"
 #include "base/rng.h"
 #include "compose/colour_law.h"
@@ -37,6 +38,24 @@ static float light_of(const FlWashField *field)
 {
     const uint8_t *fill = fl_fill_of_film(field->input, field->wash->painted);
     return 1 - (float)fl_light_share(fill, field->input->background->paper) / 32768;
+}
+
+float fl_whiteness(const uint8_t fill[3], const uint8_t paper[3])
+{
+    const float level[3] = {fill[0], fill[1], fill[2]}, below[3] = {paper[0], paper[1], paper[2]};
+    float lab[3], ground[3];
+    fl_lab(level, lab);
+    fl_lab(below, ground);
+    return fl_clamp((lab[0] - 84) / 8, 0, 1) * fl_clamp((16 - hypotf(lab[1], lab[2])) / 10, 0, 1) *
+           fl_clamp((ground[0] - 75) / 10, 0, 1);
+}
+
+/* Drops of paint look like dirt in white. */
+static float drops_of(const FlWashField *field)
+{
+    const uint8_t *fill = fl_fill_of_film(field->input, field->wash->painted);
+    const float white = fl_whiteness(fill, field->input->background->paper);
+    return field->wash->style.blooms * (1 - white);
 }
 
 /* Where the tone slopes wet paint ran, and left ragged ends. */
@@ -191,7 +210,9 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
     }
     find_box(field.wash, input, around);
     field.size = size_of(input, field.wash->painted->region);
+    field.drops = drops_of(&field);
     field.wash->brush_px = fl_clamp(.5f * field.size, 34, 85);
+    field.wash->islands = fl_smooth(.5f * field.size / field.wash->brush_px - 1); // else scratches
     find_across(&field);
     const bool made = fl_field_alloc(&field, error) && read_maps(&field, error);
     if (made) {
