@@ -268,8 +268,11 @@ static void colours_are_those_of_a_browser(void)
         {"CanvasText", "rgb(0, 0, 0)"},
         {"#12345678", "#12345678"},
         {"url(#a) RED", "url(#a) rgb(255, 0, 0)"},
+        {"darkSlateGrey", "rgb(47, 79, 79)"},
     };
-    static const char *const wrong[] = {"nonsense", "#12345", "rgb(1, 2)", "color(foo 1 1 1)", ""};
+    static const char *const wrong[] = {
+        "nonsense", "#12345", "rgb(1, 2)", "color(foo 1 1 1)", "",
+        "NavyBlue", "gray50", "violetred", "dark red",         "LightGoldenrod"};
     for (size_t i = 0; i < G_N_ELEMENTS(colours); i++) {
         g_autofree char *got = fl_css_colour(colours[i][0]);
         g_assert_cmpstr(got, ==, colours[i][1]);
@@ -450,7 +453,10 @@ static void values_that_librsvg_leaves_out_are_told(void)
         {"<image id='a' image-rendering='auto'/>", NULL},
         {"<clipPath><path id='a' clip-path='url(#c)'/></clipPath><clipPath id='c'/>", "the clip"},
         {"<clipPath><path id='a' clip-path='none'/></clipPath>", NULL},
-        {"<path id='a' clip-path='url(#c)'/><clipPath id='c'/>", NULL}};
+        {"<path id='a' clip-path='url(#c)'/><clipPath id='c'/>", NULL},
+        {"<text id='a' style='text-transform:uppercase'>a</text>", "text-transform"},
+        {"<text id='a' style='white-space:pre;font-palette:dark'>a</text>", NULL},
+        {"<g id='a' style='display:table-row-group'/>", NULL}};
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
         g_autoptr(FlWarnings) warnings = fl_warnings_new();
         g_test_message("%s", cases[i][0]);

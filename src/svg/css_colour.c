@@ -444,11 +444,15 @@ static bool from_name(const char *text, Rgba *colour)
         {"fieldtext", "000000"},    {"highlight", "b5d5ff"},        {"highlighttext", "000000"},
         {"selecteditem", "0078d7"}, {"selecteditemtext", "ffffff"}, {"mark", "ffff00"},
         {"marktext", "000000"},     {"graytext", "808080"}};
+    static const char *const of_x11[] = {"lightgoldenrod", "lightslateblue", "navyblue",
+                                         "violetred", NULL}; // of Pango's; others have digits
+    g_autofree char *lower = g_ascii_strdown(text, -1);
     PangoColor named;
     for (size_t i = 0; i < G_N_ELEMENTS(of_system); i++)
-        if (g_ascii_strcasecmp(text, of_system[i].name) == 0)
+        if (strcmp(lower, of_system[i].name) == 0)
             return from_hex(of_system[i].hex, colour);
-    if (text[fl_css_identifier(text)] || !pango_color_parse(&named, text))
+    if (lower[strspn(lower, G_CSET_a_2_z)] || g_strv_contains(of_x11, lower) ||
+        !pango_color_parse(&named, lower))
         return false;
     *colour = (Rgba){{named.red / 65535.0, named.green / 65535.0, named.blue / 65535.0}, 1};
     return true;

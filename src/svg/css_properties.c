@@ -17,14 +17,14 @@ static const char ignored[] =
     "- accent- align- animation- appearance aspect- block- border bottom box- break- caret- "
     "color-adjust color-rendering color-scheme column contain content-visibility cursor flex "
     "float font-feature- font-kerning font-optical- font-smooth font-synthesis font-variant- "
-    "font-variation- gap grid hyphens inline-size inset justify- kerning left list- margin "
-    "max- min- object- offset-position order orphans outline- overscroll- padding "
-    "perspective-origin place- pointer-events position print-color-adjust quotes resize right "
-    "row- scroll solid- speak tab-size table- text-align text-indent text-overflow text-size- "
-    "adjust text-wrap top touch- transform-style transition user-select vertical-align white- "
-    "space widows will-change word-break word-wrap z-index zoom shape- text-underline- text- "
-    "decoration- text-emphasis isolate view-transition- counter- interpolate- overflow- font- "
-    "palette font-language- font-display src line-break hanging- ruby- math-";
+    "font-variation- gap grid hyphens inline-size inset justify- kerning left list- margin max- "
+    "min- object- offset-position order orphans outline- overscroll- padding perspective-origin "
+    "place- pointer-events position print-color-adjust quotes resize right row- scroll solid- "
+    "speak tab-size table- text-align text-indent text-overflow text-size-adjust text-wrap top "
+    "touch- transform-style transition user-select vertical-align white-space widows "
+    "will-change word-break word-wrap z-index zoom shape- text-underline- text-decoration- "
+    "text-emphasis isolate view-transition- counter- interpolate- overflow- font-palette "
+    "font-language- font-display src line-break hanging- ruby- math-";
 
 static const FlCssProperty harmless = {"", FL_CSS_IGNORED, false, NULL, NULL};
 
