@@ -337,6 +337,10 @@ static void what_use_shows_has_the_variables_of_use(void)
         g_autofree char *fill = fl_property(g_hash_table_lookup(ids, id), "fill");
         g_assert_cmpstr(fill, ==, uses[i][1]);
     }
+#define TWO_USES "<use href='#b'/><use id='a' href='#b'/><path id='b' d='M0 0h9'/>"
+    assert_value("<style>use:nth-of-type(2){fill:#123456}</style>" TWO_USES, "fill", "#123456");
+    assert_value("<style>g + use{fill:#123456}</style>" TWO_USES, "fill", "");
+    assert_value("<use href='#b'><path id='a'/></use><path id='b'/>", "display", "none");
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
     g_free(computed("<g id='a' fill='var(--c, red)'><use href='#a'/></g>", "a", "fill", warnings));
     g_assert_cmpint(fl_warnings_count(warnings), ==, 1); // it shows itself
@@ -380,6 +384,7 @@ static void gaps_of_librsvg_are_filled(void)
 {
     assert_value("<polygon id='a' points='0 0 9,0 9 9 5'/>", "points", "0 0 9,0 9 9");
     assert_value("<polygon id='a' points='0 0;9 0;9 9'/>", "points", "0 0");
+    assert_value("<polygon id='a' points='0 0 9 0 9 9 ,'/>", "points", "0 0 9 0 9 9");
     assert_value("<polygon id='a' points=' 0 , 0, 9,  0,9 9 '/>", "points", "0 , 0, 9,  0,9 9");
     assert_value("<filter id='f'/><g transform='rotate(90)'><path id='a' filter='url(#f)'/></g>",
                  "filter", "url(#f)");

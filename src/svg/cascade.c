@@ -31,8 +31,9 @@ typedef struct Cascade {
     GHashTable *said; // texts of the warnings that were given
     double seconds;   // the moment that is shown; NAN: animations are left out
     FlFilmLength *length;
-    GHashTable *ids; // id -> xmlNode, the first of that id
-    int n_copied;    // elements
+    GHashTable *ids;  // id -> xmlNode, the first of that id
+    int n_copied;     // elements
+    GPtrArray *shows; // <use> with a copy, which become <g> when all selectors have been matched
     int n_clips;
 } Cascade;
 
@@ -503,13 +504,24 @@ static void copy_shown(Cascade *c, xmlNode *node, const Shown *around, int depth
     }
 }
 
-/** Makes a <use> with a copy of what it shows a group. Returns: false if it is no such. */
+/** Gives the copy of what a <use> shows its size. Returns: false if it is no <use> with a copy. */
 static bool show_copy(const Cascade *c, xmlNode *use)
 {
     xmlNode *copy = fl_is(use, "use") ? copy_in(use, fl_shown_by_use(use, c->ids)) : NULL;
-    if (copy)
-        fl_use_show(use, copy);
-    return copy != NULL;
+    if (!copy)
+        return false;
+    fl_use_show(use, copy);
+    g_ptr_array_add(c->shows, use);
+    return true;
+}
+
+/** Makes a <use> with a copy, which is its last child, a group that shows only that. */
+static void make_group(xmlNode *use)
+{
+    FL_EACH_ELEMENT (child, use)
+        if (xmlNextElementSibling(child))
+            fl_declare(child, "display:none");
+    xmlNodeSetName(use, (const xmlChar *)"g");
 }
 
 /** Moves what a <use> shows by its x and y, which come after its transform. */
@@ -706,6 +718,7 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
     g_autoptr(GHashTable) rules = index_rules(sheet->rules);
     g_autoptr(GHashTable) said = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
+    g_autoptr(GPtrArray) shows = g_ptr_array_new();
     Cascade c = {.doc = doc,
                  .path = path,
                  .number = number,
@@ -715,11 +728,14 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
                  .said = said,
                  .seconds = seconds,
                  .length = length,
-                 .ids = ids};
+                 .ids = ids,
+                 .shows = shows};
     copy_shown(&c, root, NULL, 0);
     visit(&c, root,
           &(Style){
               .variables = sheet->initial, .own = sheet->own, .units = units, .colour = "black"});
+    for (guint i = 0; i < shows->len; i++)
+        make_group(shows->pdata[i]);
     fl_css_keep_strokes(root, &units);
     if (c.work.steps > FL_SELECTOR_STEPS)
         fl_warnings_add(warnings, path, number, NULL,

@@ -68,7 +68,7 @@ char *fl_foreign_attribute(const xmlNode *node, const char *name)
 char *fl_href(const xmlNode *node)
 {
     g_autoptr(xmlChar) plain = fl_attribute(node, "href");
-    return plain ? g_strstrip(g_strdup((const char *)plain)) : fl_foreign_attribute(node, "href");
+    return plain ? g_strdup((const char *)plain) : fl_foreign_attribute(node, "href");
 }
 
 const xmlNode *fl_shown_by_use(const xmlNode *use, GHashTable *ids)

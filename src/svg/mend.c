@@ -173,7 +173,7 @@ static void mend_gradient(xmlNode *node)
 
 /* ---- lists of points ------------------------------------------------------------------------- */
 
-/** Cuts a list of points off where it breaks, and half a pair at its end. */
+/** Cuts a list of points off where it breaks, and half a pair or a comma at its end. */
 static void mend_points(xmlNode *node)
 {
     g_autoptr(xmlChar) text = fl_attribute(node, "points");
@@ -187,7 +187,7 @@ static void mend_points(xmlNode *node)
         s = fl_css_space(s);
         s = *s == ',' ? fl_css_space(s + 1) : s;
     }
-    if (!s || (!*s && n % 2 == 0))
+    if (!s || !*fl_css_space(good))
         return;
     g_autofree char *pairs = g_strndup((const char *)text, (gsize)(good - (const char *)text));
     fl_set_attribute(node, "points", pairs);

@@ -140,8 +140,9 @@ static void give_size(xmlNode *shown, const char *name, const xmlChar *size, boo
         fl_set_attribute(shown, name, size ? (const char *)size : "100%");
 }
 
-static void show_copy(xmlNode *use, xmlNode *shown, const xmlChar *width, const xmlChar *height)
+void fl_use_show(xmlNode *use, xmlNode *shown)
 {
+    g_autoptr(xmlChar) width = take(use, "width"), height = take(use, "height");
     const bool symbol = fl_is(shown, "symbol");
     g_autofree char *overflow = symbol ? fl_property(shown, "overflow") : NULL;
     if (symbol)
@@ -152,15 +153,6 @@ static void show_copy(xmlNode *use, xmlNode *shown, const xmlChar *width, const 
         give_size(shown, "width", width, symbol);
         give_size(shown, "height", height, symbol);
     }
-    xmlAddChild(use, shown);
-}
-
-void fl_use_show(xmlNode *use, xmlNode *shown)
-{
-    g_autoptr(xmlChar) width = take(use, "width"), height = take(use, "height");
-    xmlNodeSetName(use, (const xmlChar *)"g");
-    xmlUnlinkNode(shown);
-    show_copy(use, shown, width, height);
 }
 
 /** Of <use>, those are left that refer to another file, and those that show nothing. */

@@ -29,7 +29,7 @@ bool fl_is_whole(const xmlNode *node, const char *const *whole);
 bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *path, int number,
                            FlWarnings *warnings, GError **error);
 
-/** Makes a <use> a <g> around its child `shown`, a copy of the element that it refers to, of which
+/** Gives the child `shown` of a <use>, a copy of the element that it refers to, the size of <use>;
  * a <symbol> becomes a nested <svg>. */
 void fl_use_show(xmlNode *use, xmlNode *shown);
 
