@@ -72,7 +72,7 @@ static bool put_section(const Writer *writer, const FlConfig *config, const FlRu
         g_string_append(writer->text, "\n[defaults]\n");
     if (rule)
         fl_rule_append_matches(rule, writer->text);
-    return (!own || put_overrides(writer, own, NULL, &config->given, region, error)) &&
+    return ((region && !rule) || put_overrides(writer, own, NULL, &config->given, region, error)) &&
            put_overrides(writer, &config->given, region, NULL, NULL, error);
 }
 
