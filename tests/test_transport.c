@@ -329,7 +329,7 @@ static void a_state_in_a_fade_continues(void)
 /* ---- two shapes --------------------------------------------------------------------------------
  */
 
-/* Left of `edge` everything moves by `motion` px, from there on nothing does. */
+/* Left of x = 65 everything has moved by 25 px, from there on nothing has. */
 static void ink_stays_off_a_tear(void)
 {
     g_auto(FlGuides) guides = {0};

@@ -12,8 +12,9 @@
  * 0 it is dry, catches on peaks and leaves hollows bare. 0 or a flat tooth: the amounts stay. The
  * mean amount stays to within 2 % up to .2.
  *
- * play, of the box as amounts are, is of fl_wash_lay(); NULL: paint of one pigment. Where the first
- * pigment prevails wet paint hardly granulates; the second one goes from peaks into hollows.
+ * play is the balance of two pigments from fl_wash_lay(), in the box of the amounts; NULL: paint of
+ * one pigment. Wet paint hardly granulates where the first pigment prevails; the second one goes
+ * from peaks into hollows.
  */
 void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t *amounts,
                   int8_t *play);

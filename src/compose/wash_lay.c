@@ -90,8 +90,8 @@ static inline float ragged_at(const Brush *brush, float px, float py)
     return (a + (b - a) * down) / RAGGED_ONE;
 }
 
-/* Water carries paint to where it stops: a line, sharp towards what it flooded, from which ragged
- * tongues run on the way that the water went. */
+/* Water carries paint to the place where it stops: a line, sharp towards the flooded side, from
+ * which ragged tongues run on the way that the water went. */
 static inline float front_at(float away, float strength, float ragged)
 {
     if (strength <= 0 || away < -12 || away > 60)

@@ -58,7 +58,7 @@ static float drops_of(const FlWashField *field)
     return field->wash->style.blooms * (1 - white);
 }
 
-/* Where the tone slopes wet paint ran, and left ragged ends. */
+/* Wet paint ran along the slopes of the tone, and left ragged ends. */
 static void find_rough(const FlWashField *field)
 {
     const FlWash *wash = field->wash;
