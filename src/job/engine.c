@@ -4,13 +4,31 @@
 #include "transport/carried_ink.h"
 #include <string.h>
 
-/* Engines are called with their states as void pointers. */
-typedef void (*Close)(void *state);
-typedef void (*Measure)(void *state, bool energies);
-typedef bool (*Rest)(void *state);
-typedef bool (*Pairs)(const void *state, FlGuidePairs *pairs, GError **error);
-typedef GBytes *(*Save)(void *state, GError **error);
-typedef bool (*Load)(void *state, GBytes *bytes, GError **error);
+/* Functions of an engine's table, for states that fl_NAME_new() makes. */
+#define DEFINE_CALLS(name)                                                                         \
+    static void name##_close(void *state)                                                          \
+    {                                                                                              \
+        fl_##name##_free(state);                                                                   \
+    }                                                                                              \
+    static void name##_measure(void *state, bool energies)                                         \
+    {                                                                                              \
+        fl_##name##_measure(state, energies);                                                      \
+    }                                                                                              \
+    static bool name##_guide_pairs(const void *state, FlGuidePairs *pairs, GError **error)         \
+    {                                                                                              \
+        return fl_##name##_guide_pairs(state, pairs, error);                                       \
+    }                                                                                              \
+    static GBytes *name##_save(void *state, GError **error)                                        \
+    {                                                                                              \
+        return fl_##name##_save(state, error);                                                     \
+    }                                                                                              \
+    static bool name##_load(void *state, GBytes *bytes, GError **error)                            \
+    {                                                                                              \
+        return fl_##name##_load(state, bytes, error);                                              \
+    }
+
+DEFINE_CALLS(synth)
+DEFINE_CALLS(lazy)
 
 /* ---- patch: a field of matches into the recording, then the vote [F21] ------------------------
  */
@@ -26,6 +44,11 @@ static void *patch_open(const FlEngineInput *input, GError **error)
 static bool patch_frame(void *state, FlGuides *guides, const FlEnginePaint *paint, GError **error)
 {
     return fl_synth_frame(state, guides, paint->rgb, paint->stats, paint->view, error);
+}
+
+static bool patch_rest(void *state)
+{
+    return fl_synth_rest(state);
 }
 
 static int patch_drying(const FlStyleInstance *style, const FlParams *params)
@@ -118,24 +141,24 @@ static const FlEngine engines[] = {
                          .enlarges = true,
                          .plays = true,
                          .open = patch_open,
-                         .close = (Close)fl_synth_free,
-                         .measure = (Measure)fl_synth_measure,
+                         .close = synth_close,
+                         .measure = synth_measure,
                          .frame = patch_frame,
-                         .rest = (Rest)fl_synth_rest,
+                         .rest = patch_rest,
                          .drying = patch_drying,
-                         .guide_pairs = (Pairs)fl_synth_guide_pairs,
-                         .save = (Save)fl_synth_save,
-                         .load = (Load)fl_synth_load},
+                         .guide_pairs = synth_guide_pairs,
+                         .save = synth_save,
+                         .load = synth_load},
     [FL_ENGINE_LAZYFLUIDS] = {.name = "lazyfluids",
                               .reach = lazy_reach,
                               .plays = true,
                               .open = lazy_open,
-                              .close = (Close)fl_lazy_free,
-                              .measure = (Measure)fl_lazy_measure,
+                              .close = lazy_close,
+                              .measure = lazy_measure,
                               .frame = lazy_frame,
-                              .guide_pairs = (Pairs)fl_lazy_guide_pairs,
-                              .save = (Save)fl_lazy_save,
-                              .load = (Load)fl_lazy_load},
+                              .guide_pairs = lazy_guide_pairs,
+                              .save = lazy_save,
+                              .load = lazy_load},
     [FL_ENGINE_TRANSPORT] = {.name = "transport",
                              .claims = fl_tile_exists,
                              .exposure = transport_exposure,
