@@ -3,15 +3,15 @@
 # processor seconds, of which those of reading the drawing again; and the time of two workers that follows from those
 # of one task after the other, for machines that do other things.
 # usage: farm_times.sh PROGRAM DRAWING ARGUMENT...
+# shellcheck source-path=SCRIPTDIR source=tap.sh
+. "${0%/*}/tap.sh"
 set -e
 program=$(realpath "$1")
 drawing=$(realpath "$2")
 shift 2
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 mkdir times
-export FLUIDY_CACHE=off OMP_NUM_THREADS=1
+export OMP_NUM_THREADS=1
 TIMEFORMAT='%U %S %R'
 # timed FILE COMMAND...: its seconds of processor and of the wall are a line more in FILE.
 timed() {
@@ -41,7 +41,7 @@ done
 for ((k = 0; k < parts; k++)); do
     timed merge bash "merge.$k"
 done
-diff -r one two
+same one two
 longer() { # longer STEP: processor seconds until both workers are free
     awk '{if (a <= b) a += $1 + $2; else b += $1 + $2} END {print (a > b ? a : b)}' "times/$1"
 }
@@ -64,7 +64,7 @@ for step in "tasks $n" "merge $parts"; do
     wait $!
 done
 wall=$(bc <<<"$EPOCHREALTIME - $start")
-diff -r one two
+same one two
 
 read -r one one_wall <<<"$(sum one)"
 read -r tasks _ <<<"$(sum tasks)"

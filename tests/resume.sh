@@ -57,6 +57,10 @@ stop long_resumed INT 40 "${wet[@]}"
 [ $? = 75 ] && "$program" "$film" -s 05 -o "long_resumed/$output" --progress none "${wet[@]}" 2>err &&
     grep -q 'resuming an earlier run' err && same long_resumed long_whole
 result $? 'the paper has the marks of all frames before the first of a second run'
+"$program" "$film" -s 05 --no-frames --paint 'long_paint/{region}_%d.png' --progress none "${wet[@]}" 2>err &&
+    "$program" "$film" -s 05 --merge --paint 'long_paint/{region}_%d.png' -o "long_part/$output" --part 44/44 \
+        --progress none "${wet[@]}" 2>err && same long_part/w_00044.png long_whole/w_00044.png
+result $? 'and before the first of a part of a merge'
 unset film output
 
 mkdir puff

@@ -326,7 +326,6 @@ static bool compose(FlFrames *frames, int frame, int next, bool marks, FlComposi
         start_drawing(frames, fl_drawing_shown(shapes->drawing, next));
     if (frames->wet && marks && !fl_wet_frame(frames->wet, shown, error))
         return false;
-    frames->marked = shown;
     FlComposeInput input = compose_input(frames, shown);
     g_auto(FlContacts) contacts = {0};
     input.contacts = &contacts;
@@ -338,6 +337,7 @@ static bool compose(FlFrames *frames, int frame, int next, bool marks, FlComposi
         (frames->small || shapes->width == shapes->page_width ||
          fl_composite_enlarge(composite, shapes->page_width, shapes->page_height, error)) &&
         (!plan->options.vectors || find_vectors(frames, shown, composite, error));
+    frames->marked = made && marks ? shown : frames->marked;
     trim(plan);
     return made;
 }
@@ -350,7 +350,7 @@ static bool know_before(FlFrames *frames, int frame, double *paint_s, GError **e
     const bool loops = plan->options.loop;
     g_auto(FlComposite) plain = {0};
     if (!frames->wet || fl_wet_begun(frames->wet) || frames->small ||
-        (!loops && (frame > 0 || !starts_late(plan))))
+        (!loops && !starts_late(plan)))
         return true;
     return compose(frames, frame, -1, false, &plain, paint_s, error) &&
            (loops ? fl_wet_learn(frames->wet, fl_drawing_shown(plan->shapes.drawing, frame),
@@ -358,8 +358,8 @@ static bool know_before(FlFrames *frames, int frame, double *paint_s, GError **e
                   : know_earlier(frames, error));
 }
 
-static bool make_frame(FlFrames *frames, int frame, int next, FlComposite *composite,
-                       double *paint_s, GError **error)
+bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composite, double *paint_s,
+                    GError **error)
 {
     *paint_s = 0;
     return know_before(frames, frame, paint_s, error) &&
@@ -372,31 +372,21 @@ static void begin_wet(FlFrames *frames, int known)
     fl_wet_begin(frames->wet, known);
 }
 
-/* Marks on wet paper follow from the frames before, as they are composed; older ones are gone. */
+/* Marks on the paper follow from all frames before, as they are composed. */
 static bool seek_marks(FlFrames *frames, int shown, GError **error)
 {
-    const int first = MAX(shown - FL_WET_FRAMES, 0);
-    if (frames->marked >= shown || frames->marked + 1 < first)
+    if (frames->marked > shown)
         begin_wet(frames, FL_WET_FRAMES);
     bool good = true;
-    for (int f = MAX(frames->marked + 1, first); good && f < shown; f++) {
+    for (int f = frames->marked + 1; good && f < shown; f++) {
         g_auto(FlComposite) composite = {0};
         double paint_s;
         good = fl_drawing_shown(frames->plan->shapes.drawing, f) != f ||
                (seek_painters(frames, f, fl_painter_seek, error) &&
-                make_frame(frames, f, -1, &composite, &paint_s, error));
+                fl_frames_make(frames, f, -1, &composite, &paint_s, error) &&
+                fl_frames_tell(frames, "paint", f + 1, 0, error));
     }
     return good;
-}
-
-bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composite, double *paint_s,
-                    GError **error)
-{
-    // a merge that starts late has the paint of the earlier frames
-    const bool late = frames->wet && frames->plan->out.merge && !fl_wet_begun(frames->wet);
-    return (!late ||
-            seek_marks(frames, fl_drawing_shown(frames->plan->shapes.drawing, frame), error)) &&
-           make_frame(frames, frame, next, composite, paint_s, error);
 }
 
 /* ---- before the first frame ------------------------------------------------------------------ */

@@ -247,32 +247,16 @@ static bool note_obstacles(Pipeline *pipeline, GError **error)
     return true;
 }
 
-/* Goes through the frames that an earlier run has written: their paint is in the cache, or is made
- * again. The paper has the marks of all of them. */
-static bool pass_written(FlFrames *frames, int first, GError **error)
-{
-    const int begin = frames->plan->out.first;
-    if (first == begin || !frames->wet)
-        return first == begin || fl_frames_seek(frames, first, error);
-    for (int f = begin; f < first; f++) {
-        g_auto(FlComposite) composite = {0};
-        double paint_s;
-        if (!fl_frames_make(frames, f, -1, &composite, &paint_s, error) ||
-            !fl_frames_tell(frames, "paint", f + 1, 0, error))
-            return false;
-    }
-    return true;
-}
-
-/* Masks, guides, and what frames of an earlier run leave to the first one. */
+/* Masks, guides, and what earlier frames, of another run or part, leave to the first one. */
 static bool paint_before(Pipeline *pipeline, GError **error)
 {
     FlFrames *frames = &pipeline->frames;
+    const int first = pipeline->resume.first;
     if (!fl_frames_prepare(frames, error))
         return false;
     const gint64 start = g_get_monotonic_time();
     if (!fl_resume_start(&pipeline->resume, frames->plan, error) ||
-        !fl_frames_lead_in(frames, error) || !pass_written(frames, pipeline->resume.first, error))
+        !fl_frames_lead_in(frames, error) || (first > 0 && !fl_frames_seek(frames, first, error)))
         return false;
     pipeline->stats.paint_s = fl_seconds_since(start);
     return true;
