@@ -35,6 +35,10 @@ bool fl_file_read(const char *path, size_t most, const FlFileWait *wait, char **
 /** The names in a folder, sorted; NULL with FL_ERROR_INPUT. To be unref'd. */
 GPtrArray *fl_folder_names(const char *folder, GError **error);
 
+/** Removes a file, or a folder with all below it; links are not followed. True if it is missing;
+ * false with FL_ERROR_OUTPUT. */
+bool fl_file_remove(const char *path, GError **error);
+
 /** Opens a regular file to read it, with more flags of open(). Returns: a descriptor; -1 for one
  * that is missing, a pipe or a device, which could make the program wait. */
 int fl_open_regular(const char *path, int flags, size_t *bytes);

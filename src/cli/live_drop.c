@@ -1,7 +1,8 @@
 #include "live_drop.h"
 
+#include "base/file.h"
+
 #include <gio/gio.h>
-#include <glib/gstdio.h>
 #include <string.h>
 
 #define KNOWN "^[^./[:cntrl:]][^/[:cntrl:]]{0,190}\\.(svgz?|css|json|lottie)$"
@@ -55,18 +56,6 @@ FlLiveDrop *fl_live_drop_new(SoupServerMessage *message, GError **error)
     return good ? g_steal_pointer(&drop) : NULL;
 }
 
-static void remove_files(const char *folder)
-{
-    g_autoptr(GDir) files = g_dir_open(folder, 0, NULL);
-    for (const char *name; files && (name = g_dir_read_name(files));) {
-        g_autofree char *path = g_build_filename(folder, name, NULL);
-        if (g_file_test(path, G_FILE_TEST_IS_DIR) && !g_file_test(path, G_FILE_TEST_IS_SYMLINK))
-            remove_files(path);
-        g_unlink(path);
-    }
-    g_rmdir(folder);
-}
-
 const char *const *fl_live_drop_inputs(const FlLiveDrop *drop)
 {
     return (const char *const *)drop->inputs;
@@ -77,7 +66,7 @@ void fl_live_drop_free(FlLiveDrop *drop)
     if (!drop)
         return;
     if (drop->folder)
-        remove_files(drop->folder);
+        fl_file_remove(drop->folder, NULL);
     g_free(drop->inputs[0]);
     g_free(drop->folder);
     g_free(drop);

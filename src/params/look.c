@@ -106,17 +106,6 @@ static bool unpack_files(Unpacking *unpacking, GError **error)
     return true;
 }
 
-static void remove_folder(const char *path)
-{
-    g_autoptr(GDir) dir = g_dir_open(path, 0, NULL);
-    for (const char *name; dir && (name = g_dir_read_name(dir));) {
-        g_autofree char *below = g_build_filename(path, name, NULL);
-        if (g_unlink(below) != 0)
-            remove_folder(below);
-    }
-    g_rmdir(path);
-}
-
 /* Removes folders in which looks were unpacked until a day ago by processes that were killed. */
 static void remove_leftovers(const char *parent)
 {
@@ -126,7 +115,7 @@ static void remove_leftovers(const char *parent)
         GStatBuf about;
         if (strchr(name, '.') && g_stat(path, &about) == 0 &&
             about.st_mtime < time(NULL) - 24 * 3600)
-            remove_folder(path);
+            fl_file_remove(path, NULL);
     }
 }
 
@@ -144,8 +133,7 @@ static bool unpack_beside(Unpacking *unpacking, const char *folder, GError **err
     if (done && g_rename(beside, folder) != 0 && errno != EEXIST && errno != ENOTEMPTY)
         done =
             fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot be written: %s", folder, g_strerror(errno));
-    if (g_file_test(beside, G_FILE_TEST_IS_DIR))
-        remove_folder(beside);
+    fl_file_remove(beside, NULL);
     return done;
 }
 

@@ -1,6 +1,7 @@
 #include "style/write_style.h"
 
 #include "base/error.h"
+#include "base/file.h"
 #include "io/atomic_file.h"
 #include "io/png.h"
 #include "style/manifest.h"
@@ -29,19 +30,6 @@ static bool failed(GError **error, const char *path, const char *what)
 {
     g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: %s: %s", path, what, g_strerror(errno));
     return false;
-}
-
-static bool remove_tree(const char *path, GError **error)
-{
-    g_autoptr(GDir) dir =
-        g_file_test(path, G_FILE_TEST_IS_SYMLINK) ? NULL : g_dir_open(path, 0, NULL);
-    const char *name;
-    while (dir && (name = g_dir_read_name(dir))) {
-        g_autofree char *inner = g_build_filename(path, name, NULL);
-        if (!remove_tree(inner, error))
-            return false;
-    }
-    return g_remove(path) == 0 || errno == ENOENT || failed(error, path, "cannot be removed");
 }
 
 static bool write_planes(const char *folder, const uint8_t *data, const FlStyle *style,
@@ -84,7 +72,7 @@ static bool move_parts(const char *from, const char *to, GError **error)
     for (size_t i = 0; i < G_N_ELEMENTS(parts); i++) {
         g_autofree char *source = g_build_filename(from, parts[i], NULL);
         g_autofree char *target = g_build_filename(to, parts[i], NULL);
-        if (!remove_tree(target, error))
+        if (!fl_file_remove(target, error))
             return false;
         if (g_file_test(source, G_FILE_TEST_EXISTS) && g_rename(source, target) != 0)
             return failed(error, target, "cannot be replaced");
@@ -96,7 +84,7 @@ static bool remove_parts(const char *folder, GError **error)
 {
     for (size_t i = 0; i < G_N_ELEMENTS(parts); i++) {
         g_autofree char *path = g_build_filename(folder, parts[i], NULL);
-        if (!remove_tree(path, error))
+        if (!fl_file_remove(path, error))
             return false;
     }
     return true;
