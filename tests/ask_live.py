@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Asks the server of --serve what it must not answer; speaks lines of "ok - " and "not ok - ".
 
-usage: ask_live.py ADDRESS [flood]
+usage: ask_live.py ADDRESS [flood|keyed]
+keyed: the program was given --style 'ink@1 ./ink@4~2'.
 flood: opens more connections than the server has descriptors for, and drops bad.json and good.lottie, nothing else."""
-import http.client, json, socket, struct, sys, time, urllib.parse
+import http.client, json, os, socket, struct, sys, time, urllib.parse
 
 address = urllib.parse.urlsplit(sys.argv[1])
 root, host = address.path, address.netloc
@@ -139,6 +140,10 @@ if "flood" in sys.argv:
     tell("one with frames is shown", status == 200 and page.until(lambda m: "film" in m)["film"]["numbers"] == [7])
     sys.exit()
 page = Page()
+if "keyed" in sys.argv:
+    ink = os.path.realpath("ink")
+    tell("paths of keys are those of any folder", f"style = {ink}@1 {ink}@4~2\n" in page.state()["config"])
+    sys.exit()
 tell("the page is there", ask("GET", root)[0] == 200 and "inspect" not in ask("GET", root)[1])
 tell("its address has a secret", ask("GET", "/")[0] == 404 and ask("GET", "/0000/")[0] == 404 and len(root) > 30)
 tell("a name that leads here from elsewhere is refused", ask("GET", root, {"Host": f"evil.example:{address.port}"})[0] == 403)

@@ -93,6 +93,10 @@ result $? 'the server writes no outputs and does not change the config'
 ends INT
 result $? 'SIGINT ends it with status 0, without leftovers'
 
+serves -s 'ink@1 ./ink@4~2' --serve
+visit ask_live.py "$address" keyed
+ends INT
+
 mkdir bin
 cp "$program" bin
 LD_LIBRARY_PATH=$(dirname "$program")/..${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}

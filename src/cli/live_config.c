@@ -83,6 +83,24 @@ static char *absolute(const FlOption *option, const char *value)
     return path || (may && names_file) ? g_canonicalize_filename(value, NULL) : g_strdup(value);
 }
 
+static gboolean add_key(const GMatchInfo *match, GString *text, void *option)
+{
+    g_autofree char *value = g_match_info_fetch(match, 1), *frame = g_match_info_fetch(match, 2);
+    g_autofree char *path = absolute(option, value);
+    g_string_append_printf(text, "%s%s", path, frame);
+    return FALSE;
+}
+
+/* The same of a value that may have keys, STYLE@FRAME or STYLE@FRAME~FRAMES. */
+static char *absolute_keys(const FlOption *option, const char *value)
+{
+    g_autoptr(GRegex) key = g_regex_new("(\\S.*?)(@-?[0-9]+(?:~[0-9]+)?(?:\\s+|$))", 0, 0, NULL);
+    const bool keyed = option->type == FL_OPTION_STYLE && !g_file_test(value, G_FILE_TEST_IS_DIR) &&
+                       g_regex_match(key, value, 0, NULL);
+    return keyed ? g_regex_replace_eval(key, value, -1, 0, 0, add_key, (void *)option, NULL)
+                 : absolute(option, value);
+}
+
 static const FlOption *option_of(const char *section, const char *key)
 {
     const bool project = strcmp(section, "project") == 0;
@@ -134,7 +152,7 @@ static void add_command_line(char **text, const FlArgs *args)
     for (size_t k = 0; k < args->render.n_settings; k++) {
         const FlSetting *setting = &args->render.settings[k];
         const FlOption *option = option_of("defaults", setting->name);
-        g_autofree char *value = option ? absolute(option, setting->value) : NULL;
+        g_autofree char *value = option ? absolute_keys(option, setting->value) : NULL;
         set(text, "defaults", setting->name, value ? value : setting->value);
     }
     for (int i = 0; i < fl_option_count(); i++) {
