@@ -252,6 +252,19 @@ static double leftwards(const FlDrawing *drawing, int frame, int x)
     return (half[0] - half[1]) / (G_PI / 2 * 70 * 70);
 }
 
+/* A loop comes back to a frame without the region. */
+static void paint_that_comes_later_in_a_loop_rests(void)
+{
+#define GROUND "<rect id='g' fill='#123456' width='9' height='9'/>"
+#define LATER GROUND "<circle id='d' fill='#5bb7d8' cx='150' cy='150' r='70'/>"
+    static const char *const frames[] = {GROUND, LATER, LATER, NULL};
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film(folder, frames);
+    g_assert_cmpint(fl_drawing_regions(drawing), ==, 2);
+    for (int t = 0; t < 3; t++)
+        g_assert_cmpfloat(fl_drawing_drift(drawing, 1, -1, t, true).pace, ==, 0);
+}
+
 /* A disc moves to the right, and rests. */
 static void paint_that_moves_is_dark_behind(void)
 {
@@ -864,6 +877,8 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/each-of-many-fills-stays", each_of_many_fills_stays);
     g_test_add_func("/wash/light-paint-has-its-light-above", light_paint_has_its_light_above);
     g_test_add_func("/wash/shapes-apart-stay-each", shapes_apart_stay_each);
+    g_test_add_func("/wash/paint-that-comes-later-in-a-loop-rests",
+                    paint_that_comes_later_in_a_loop_rests);
     g_test_add_func("/wash/paint-that-moves-is-dark-behind", paint_that_moves_is_dark_behind);
     g_test_add_func("/wash/it-rides-with-its-figure", it_rides_with_its_figure);
     g_test_add_func("/wash/a-limb-carries-its-own", a_limb_carries_its_own);

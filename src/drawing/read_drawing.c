@@ -70,6 +70,11 @@ FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame)
 
 #define DRIFT_FRAMES 12
 
+static bool has_begun(const FlAnchor *anchor)
+{
+    return anchor->cosine != 0 || anchor->sine != 0;
+}
+
 /* The way of a region's anchor from a frame to another; 0 without it. */
 static FlPoint way_between(const FlDrawing *drawing, int region, int from, int to)
 {
@@ -77,8 +82,8 @@ static FlPoint way_between(const FlDrawing *drawing, int region, int from, int t
         return (FlPoint){0, 0};
     const FlAnchor *was = &drawing->frame[from].anchor[region];
     const FlAnchor *is = &drawing->frame[to].anchor[region];
-    const bool known = was->cosine != 0 || was->sine != 0;
-    return known ? (FlPoint){is->x - was->x, is->y - was->y} : (FlPoint){0, 0};
+    return has_begun(was) && has_begun(is) ? (FlPoint){is->x - was->x, is->y - was->y}
+                                           : (FlPoint){0, 0};
 }
 
 FlDrift fl_drawing_drift(const FlDrawing *drawing, int region, int ground, int frame, bool loop)
