@@ -1,7 +1,10 @@
 /* Wet paper: a disk that moves over it wets what lies ahead and stains what it leaves. */
 #include "base/alloc.h"
 #include "guides/distance.h"
+#include "io/png.h"
+#include "scratch.h"
 #include "wet/marks.h"
+#include <fluidy/fluidy.h>
 #include <math.h>
 
 enum { SIDE = 200, PIXELS = SIDE * SIDE, RADIUS = 40 };
@@ -314,6 +317,56 @@ static void test_other_paint(void)
     scene_free(scene);
 }
 
+/* The red of a page where a blue coat has left, and there a limb below it, if any, a little later.
+ */
+static double red_behind_coat(bool limb, const char *stain)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int f = 1; f <= 8; f++) {
+        g_autofree char *name = g_strdup_printf("d_%d.svg", f);
+        g_autofree char *shapes =
+            g_strdup_printf("<path d='M%d 20h5v60h-5z' fill='#a53' display='%s'/>"
+                            "<path d='M%d 15h30v70h-30z' fill='#23a'/>",
+                            f < 7 ? 27 : 90, limb ? "inline" : "none", 17 + 3 * f);
+        g_free(scratch_svg(folder, name, shapes));
+    }
+    g_autofree char *output = g_build_filename(folder, "d_%d.png", NULL);
+    g_autofree char *style = g_build_filename(g_getenv("FLUIDY_FIXTURES"), "style-small", NULL);
+    const char *const inputs[] = {folder, NULL};
+    const FlSetting settings[] = {{.name = "style", .value = style},
+                                  {.name = "front", .value = "0"},
+                                  {.name = "stain", .value = stain}};
+    const FlRenderOptions options = {.size = sizeof options,
+                                     .inputs = inputs,
+                                     .output = output,
+                                     .width = 96,
+                                     .settings = settings,
+                                     .n_settings = G_N_ELEMENTS(settings)};
+    g_autoptr(GError) error = NULL;
+    fl_render(&options, &error);
+    g_assert_no_error(error);
+    g_autofree char *last = g_build_filename(folder, "d_8.png", NULL);
+    FlPicture *picture = fl_picture_read_png(last, &error);
+    g_assert_no_error(error);
+    double sum = 0;
+    for (int y = 28; y < 68; y++)
+        for (int x = 27; x < 31; x++)
+            sum += picture->rgba[4 * (y * 96 + x)];
+    fl_picture_free(picture);
+    return sum / (4 * 40);
+}
+
+/* A limb that leaves shows no hole in the stain of a coat that was above it. */
+static void test_limb(void)
+{
+    const double bare = red_behind_coat(false, "0"), stain = red_behind_coat(false, "1");
+    const double limb = red_behind_coat(true, "1");
+    g_test_message("red of bare paper %.2f, of a stain %.2f, of one below a limb %.2f", bare, stain,
+                   limb);
+    g_assert_cmpfloat(stain, <, bare - 4);
+    g_assert_cmpfloat(limb, <, stain + 0.5 * (bare - stain));
+}
+
 /* The most ink of the fronts of a disk of region 3 where paint of a region was seen: of any colour
  * but the disk's own. */
 static float most_ink(int16_t region, float pace)
@@ -529,6 +582,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/what-vanishes-leaves-less-than-what-recedes", test_vanish);
     g_test_add_func("/wet/fronts-go-with-a-shape-that-jumps", test_jump);
     g_test_add_func("/wet/paint-on-other-paint-marks-nothing", test_other_paint);
+    g_test_add_func("/wet/a-limb-that-leaves-shows-no-hole-in-a-stain", test_limb);
     g_test_add_func("/wet/seen-paint-runs-ahead", test_seen_paint);
     g_test_add_func("/wet/what-grows-keeps-its-colour", test_grown);
     g_test_add_func("/wet/marks-fade-until-none-is-left", test_dries);

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #define AHEAD_FRAMES 4 // a front wets paper where the figure will be so soon
+#define LIMB_PX 12     // px of the page: half the width of a limb, at most
 #define MARGIN_PX 11   // px of the page around the masks of these frames
 
 /** The frame whose picture a region with a hold shows. */
@@ -105,18 +106,25 @@ static int lies_lowest(uint16_t lowest, int region)
     return lowest == 0 || lowest > region;
 }
 
-/** Marks the cells in which a region lies on bare paper: bit 0 now, bit 1 before. */
-static void find_touches(const FlWet *wet, int region, Planes *planes)
+/** Marks the cells in which a region lies on bare paper: bit 0 now; bit 1 before, and there also a
+ * limb's half width below other figures: a limb that leaves shows no hole in a stain. */
+static bool find_touches(const FlWet *wet, int region, Planes *planes, GError **error)
 {
     const FlRect rect = planes->rect;
-    for (int y = 0; y < rect.height; y++)
+    g_autofree uint8_t *bare = fl_alloc_unset(fl_rect_pixels(rect), 1, "bare paper", error);
+    for (int y = 0; y < rect.height && bare; y++)
         for (int x = 0; x < rect.width; x++) {
             const size_t cell =
                 (size_t)(rect.y + y) * (size_t)wet->sheet.page.width + (size_t)(rect.x + x);
-            planes->touches[(size_t)y * (size_t)rect.width + (size_t)x] =
-                (uint8_t)(lies_lowest(wet->lowest[0][cell], region) |
-                          lies_lowest(wet->lowest[1][cell], region) << 1);
+            const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
+            planes->touches[p] = (uint8_t)lies_lowest(wet->lowest[0][cell], region);
+            bare[p] = lies_lowest(wet->lowest[1][cell], region) ? 255 : 0;
         }
+    if (!bare || !fl_distance(bare, rect.width, rect.height, planes->beyond, error))
+        return false;
+    for (size_t p = 0; p < fl_rect_pixels(rect); p++)
+        planes->touches[p] |= (uint8_t)((planes->beyond[p] > -LIMB_PX * wet->sheet.px) << 1);
+    return true;
 }
 
 /** The share of the smaller of both shapes that lies in the other. */
@@ -181,11 +189,11 @@ static bool read_planes(const FlWetStep *step, FlMarker *marker, int before, int
     if (!fl_wet_get_mask(wet, region, now, rect, planes->now, error) ||
         !read_ahead(wet, marker->plan, now, planes, error) ||
         !find_before(wet, marker, before, planes, error) ||
+        !find_touches(wet, region, planes, error) ||
         !fl_distance(planes->ahead, rect.width, rect.height, planes->beyond, error))
         return false;
     for (size_t p = 0; p < fl_rect_pixels(rect); p++) // of each pixel to the masks ahead
         planes->beyond[p] = MAX(-planes->beyond[p], 0);
-    find_touches(wet, region, planes);
     return !moves || !wet->motion ||
            fl_wet_get_motion(wet, region, before, now, rect, planes->motion, error);
 }

@@ -18,8 +18,8 @@ typedef struct FlWetDials {
 /** The surroundings of a region, planes of its rect. */
 typedef struct FlWetAround {
     const float *beyond;    // distance to its masks now and in some frames to come, cells; 0 inside
-    const uint8_t *touches; // the region lies on bare paper: bit 0
-                            // now, bit 1 in the frame before
+    const uint8_t *touches; // bit 0: the region lies on bare paper; bit 1: it did so in the frame
+                            // before, or on a limb
 } FlWetAround;
 
 /** Adds the front of a frame to an array of FlFrontMark. FL_ERROR_NO_MEMORY. */
