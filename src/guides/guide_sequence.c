@@ -150,7 +150,8 @@ static bool get_motion(const FlGuideSequence *sequence, int frame, FlGuides *gui
 
 bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame)
 {
-    return sequence->frames[frame - sequence->source.first].rests;
+    frame -= sequence->source.first;
+    return frame > 0 && sequence->frames[frame].rests; // those before the first are not known
 }
 
 bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuides *guides,
