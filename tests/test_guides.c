@@ -483,6 +483,18 @@ static void a_part_of_a_film_knows_its_frames_by_their_numbers(void)
     g_assert_false(fl_guide_sequence_rests(p, 4));
 }
 
+static void a_box_holds_what_is_covered_enough(void)
+{
+    g_auto(FlGuides) g = {0};
+    g_assert_true(fl_guides_init(&g, W, H, NULL));
+    memset(g.mask, 0, (size_t)W * H);
+    g.mask[2 * W + 3] = 40, g.mask[5 * W + 7] = 200;
+    const FlRect all = fl_guides_box(&g, 1), inside = fl_guides_box(&g, 128);
+    g_assert_true(all.x == 3 && all.y == 2 && all.width == 5 && all.height == 4);
+    g_assert_true(inside.x == 7 && inside.y == 5 && inside.width == 1 && inside.height == 1);
+    g_assert_cmpint(fl_guides_box(&g, 201).width, ==, 0);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -495,6 +507,7 @@ int main(int argc, char **argv)
     TEST(extents_start_again_where_a_shape_reappears);
     TEST(a_part_that_flashes_up_stays_at_rest);
     TEST(a_thin_bar_moves_as_one);
+    TEST(a_box_holds_what_is_covered_enough);
     TEST(a_ball_may_leap_by_more_than_its_size);
     TEST(smoothing_brings_out_the_speed_of_binary_masks);
     TEST(degenerate_shapes_are_defined);

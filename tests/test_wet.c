@@ -134,6 +134,27 @@ static float charge_of(const Scene *scene)
     return sum;
 }
 
+/* The most red that the stains of a disk absorb, whose paint has 30 of red and the rest of all. */
+static float most_red(int rest)
+{
+    Scene *scene = scene_new();
+    float most = 0;
+    for (int p = 0; p < 3 * PIXELS; p++)
+        scene->rgb[p] = (uint8_t)(p % 3 == 0 ? 30 : rest);
+    mark(scene, 80, 86, 0);
+    for (guint i = 0; i < scene->stains->len; i++)
+        most = fmaxf(most, g_array_index(scene->stains, FlStainMark, i).ink[0]);
+    scene_free(scene);
+    return most;
+}
+
+/* The stain of black paint is light, that of a colour as deep as the colour. */
+static void test_black(void)
+{
+    g_assert_cmpfloat(most_red(255), >, 1);
+    g_assert_cmpfloat(most_red(30), <, 0.6f * most_red(255));
+}
+
 static void test_ahead(void)
 {
     Scene *scene = scene_new();
@@ -569,6 +590,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/wet/a-front-runs-ahead-and-a-stain-stays-behind", test_ahead);
+    g_test_add_func("/wet/black-paint-leaves-a-light-stain", test_black);
     g_test_add_func("/wet/a-quick-shape-leaves-less", test_quick);
     g_test_add_func("/wet/a-turn-after-quick-motion-leaves-less", test_turn);
     g_test_add_func("/wet/a-disk-that-spins-passes-straight-on", test_spin);
