@@ -1,5 +1,5 @@
-/* GLib is not built for ThreadSanitizer, which so does not see what its mutexes order. Preloaded, this
- * tells it. */
+/* GLib is not built for ThreadSanitizer, which so does not see what its mutexes and what is made
+ * once order. Preloaded, this tells it. */
 #include <dlfcn.h>
 #include <glib.h>
 
@@ -22,4 +22,23 @@ void g_mutex_unlock(GMutex *mutex)
         *(void **)&real = dlsym(RTLD_NEXT, "g_mutex_unlock");
     __tsan_release(mutex);
     real(mutex);
+}
+
+gboolean(g_once_init_enter)(volatile void *location)
+{
+    static gboolean (*real)(volatile void *);
+    if (!real)
+        *(void **)&real = dlsym(RTLD_NEXT, "g_once_init_enter");
+    const gboolean first = real(location);
+    __tsan_acquire((void *)location);
+    return first;
+}
+
+void(g_once_init_leave)(volatile void *location, gsize result)
+{
+    static void (*real)(volatile void *, gsize);
+    if (!real)
+        *(void **)&real = dlsym(RTLD_NEXT, "g_once_init_leave");
+    __tsan_release((void *)location);
+    real(location, result);
 }
