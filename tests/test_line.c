@@ -182,6 +182,21 @@ static void ends_taper_where_nothing_joins_them(void)
     }
 }
 
+static void a_stroke_of_few_widths_keeps_its_ends(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing =
+        drawing_of_one(folder, "<path d='M40 50H120' stroke='#222' stroke-width='20'/>");
+    uint8_t plain[SIDE * SIDE], left[SIDE * SIDE];
+    double share[20];
+    drawn_with(drawing, 0, FL_LINE_PLAIN, 0, plain);
+    drawn_with(drawing, 0, FL_LINE_PEN, 0, left);
+    profile(left, plain, 40, 80, share);
+    g_test_message("ends %.2f, %.2f, middle %.2f", share[0], share[19], share[10]);
+    g_assert_cmpfloat(share[0], >, .85 * share[10]);
+    g_assert_cmpfloat(share[19], >, .85 * share[10]);
+}
+
 /* What is left of a ring in each direction, of the hand of a seed. */
 enum { PLACES = 72 };
 static void ring_of(const FlDrawing *drawing, FlLine line, uint64_t seed, double at[PLACES])
@@ -313,6 +328,8 @@ int main(int argc, char **argv)
                     a_line_of_twice_the_size_swells_at_the_same_places);
     g_test_add_func("/line/ends-taper-where-nothing-joins-them",
                     ends_taper_where_nothing_joins_them);
+    g_test_add_func("/line/a-stroke-of-few-widths-keeps-its-ends",
+                    a_stroke_of_few_widths_keeps_its_ends);
     g_test_add_func("/line/a-closed-line-shows-no-seam", a_closed_line_shows_no_seam);
     g_test_add_func("/line/what-is-no-line-is-plain", what_is_no_line_is_plain);
     g_test_add_func("/line/lines-of-every-kind-are-drawn", lines_of_every_kind_are_drawn);

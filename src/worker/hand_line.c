@@ -163,14 +163,16 @@ static float tooth_at(const FlTooth *tooth, int x, int y)
                : 0;
 }
 
-/** The width that an end's taper leaves, as a share. */
+/** The width that an end's taper leaves, as a share. A stroke of few widths, such as a leg, keeps
+ * its ends: two tapers alone would make a seed of it. */
 static float taper_at(const FlLineKind *kind, const FlLinePath *path, float far)
 {
     const float over = fminf(kind->taper, path->length / 3);
+    const float thinner = (1 - kind->tip) * smooth(path->length, 4, 10);
     float share = 1;
     for (int end = 0; end < 2 && !path->closed && over > 0; end++) {
         const float t = 1 - CLAMP((end ? path->length - far : far) / over, 0, 1);
-        share *= 1 - path->bare[end] * (1 - kind->tip) * t * t;
+        share *= 1 - path->bare[end] * thinner * t * t;
     }
     return share;
 }
