@@ -139,30 +139,18 @@ static float overlap_of(const Planes *planes)
     return (float)both / (float)MAX(MIN(before, now), 1);
 }
 
-/** The contour in a frame that was not looked at, or only in an earlier run, of which the values of
- * its points are kept. */
+/** Finds the contour before a region's first marks; the values of its points are unknown. */
 static bool find_first(const FlWet *wet, FlMarker *marker, int frame, GError **error)
 {
     const int earlier = before_that(wet, marker->plan, frame);
-    const bool known = marker->before.rect.width > 0;
-    const FlRect rect = known
-                            ? marker->before.rect
-                            : marked_part(wet, marker->plan, earlier < 0 ? frame : earlier, frame);
+    const FlRect rect = marked_part(wet, marker->plan, earlier < 0 ? frame : earlier, frame);
     g_autofree uint8_t *mask = fl_alloc_unset(fl_rect_pixels(rect), 1, "a mask", error);
-    g_auto(FlMovingEdge) kept = marker->before;
     const FlWetShape shape = {
         .rect = rect, .page = wet->sheet.page, .px = wet->sheet.px, .frames = 1, .now = mask};
-    marker->before = (FlMovingEdge){0};
     if (!mask || !fl_wet_get_mask(wet, marker->plan->region, frame, rect, mask, error) ||
         !fl_moving_edge_look(&marker->before, &shape, error))
         return false;
-    if (kept.n != marker->before.n)
-        marker->before.n = 0; // its values are unknown
-    for (int i = 0; i < marker->before.n; i++) {
-        const FlEdgePoint place = marker->before.point[i];
-        marker->before.point[i] = kept.point[i];
-        marker->before.point[i].x = place.x, marker->before.point[i].y = place.y;
-    }
+    marker->before.n = 0;
     return true;
 }
 

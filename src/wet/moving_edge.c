@@ -249,10 +249,10 @@ static void find_ink(const FlWetShape *shape, const FlMovingEdge *before, const 
     float sum[3] = {0}, weight = 0, ground[2];
     fl_wet_ground(shape, point->x, point->y, ground);
     float x = point->x - point->u - ground[0], y = point->y - point->v - ground[1];
-    const bool new = was &&fl_wet_plane_at(shape->distance_before, shape->rect, x, y) < -1;
-    const float nx = new ? was->nx : point->nx, ny = new ? was->ny : point->ny;
-    x = new ? (float)before->rect.x + was->x : (float)shape->rect.x + x;
-    y = new ? (float)before->rect.y + was->y : (float)shape->rect.y + y;
+    const bool fresh = was && fl_wet_plane_at(shape->distance_before, shape->rect, x, y) < -1;
+    const float nx = fresh ? was->nx : point->nx, ny = fresh ? was->ny : point->ny;
+    x = fresh ? (float)before->rect.x + was->x : (float)shape->rect.x + x;
+    y = fresh ? (float)before->rect.y + was->y : (float)shape->rect.y + y;
     for (int k = 1; k <= 4; k++) {
         const float depth = MIN(2.2f * (float)k * shape->px, 0.8f * point->half_width);
         const int px = (int)floorf(x - depth * nx + 0.5f), py = (int)floorf(y - depth * ny + 0.5f);

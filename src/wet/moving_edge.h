@@ -47,7 +47,7 @@ typedef struct FlMovingEdge {
     int n;
     FlEdgePoint *point;
     int32_t *nearest; // of rect: the point nearest to each pixel; -1: deep inside
-    float *distance;  // of rect: to the contour, positive inside; NULL: not known
+    float *distance;  // of rect: to the contour, positive inside; NULL: no frame yet
     int known;        // points whose motion is known
     float fastest;    // of all points, cells a frame
 } FlMovingEdge;

@@ -122,7 +122,7 @@ static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, floa
     for (int c = 0; c < 3; c++)
         mark.ink[c] = fl_wet_between(point->ink_before[c], point->ink[c], cover.last);
     const float black = MIN(MIN(mark.ink[0], mark.ink[1]), mark.ink[2]);
-    for (int c = 0; c < 3; c++) // a little of it is no stain as dark as all
+    for (int c = 0; c < 3; c++) // a thin stain of black is grey
         mark.ink[c] /= 1 + 0.6f * black;
     g_array_append_val(marks, mark);
 }

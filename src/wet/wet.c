@@ -117,19 +117,19 @@ static bool update_lowest(FlWet *wet, int before, int frame, GError **error)
 /** The share of the painted area that was not there before: nearly all of it after a cut. */
 static float cut_of(const FlWet *wet, int frame)
 {
-    double new = 0, all = 0;
+    double fresh = 0, all = 0;
     for (int m = 0; m < wet->n_markers; m++) {
         const FlMarker *marker = &wet->marker[m];
         const int region = marker->plan->region, shown = fl_wet_shown_by(marker->plan, frame);
         if (!fl_mask_store_has(wet->shapes->masks, region, shown))
             continue;
         const double area = marker->plan->area_px;
-        new += area *(1 - (double)marker->partner), all += area;
+        fresh += area * (1 - (double)marker->partner), all += area;
     }
     const FlDrawing *drawing = wet->shapes->drawing;
     const double page = (double)fl_drawing_width(drawing) * fl_drawing_height(drawing);
-    return fl_ease(0.5f, 0.9f, (float)(new / MAX(all, 1))) *
-           fl_ease(0.01f, 0.05f, (float)(new / page));
+    return fl_ease(0.5f, 0.9f, (float)(fresh / MAX(all, 1))) *
+           fl_ease(0.01f, 0.05f, (float)(fresh / page));
 }
 
 static bool mark_all(FlWetStep *step, GError **error)
@@ -151,7 +151,8 @@ static bool mark_all(FlWetStep *step, GError **error)
     return true;
 }
 
-void fl_wet_place_cells(FlWet *wet)
+/** Shows the cells where the camera has moved them by less than a cell. */
+static void place_cells(FlWet *wet)
 {
     const float c = (float)wet->cell;
     wet->sheet.shift_x = (int)floorf(c * wet->camera_x + 0.5f);
@@ -178,7 +179,7 @@ static bool move_sheet(FlWet *wet, const FlAffine *came, GError **error)
         from.x0 -= wet->camera_x, from.y0 -= wet->camera_y;
         wet->camera_x = wet->camera_y = 0;
     }
-    fl_wet_place_cells(wet);
+    place_cells(wet);
     const bool stays = only_pans(&from) && from.x0 == 0 && from.y0 == 0;
     return stays || fl_wet_sheet_turn(&wet->sheet, &from, error);
 }
@@ -219,7 +220,8 @@ static bool roll_in(FlWet *wet, int frame, GError **error)
     return true;
 }
 
-bool fl_wet_show(FlWet *wet, GError **error)
+/** Makes the layer of the sheet as it is. */
+static bool show(FlWet *wet, GError **error)
 {
     free(wet->layer.rgba);
     const bool shown = fl_wet_sheet_layer(&wet->sheet, wet->paper, &wet->layer, error);
@@ -237,7 +239,7 @@ bool fl_wet_frame(FlWet *wet, int frame, GError **error)
     if (!do_step(wet, wet->at, frame, error))
         return false;
     wet->at = frame;
-    return fl_wet_show(wet, error);
+    return show(wet, error);
 }
 
 /** Swaps the contours and the marks of the last frame. */
@@ -256,13 +258,13 @@ bool fl_wet_follow(FlWet *wet, FlWet *earlier, GError **error)
         return true; // a page of another size is a new sheet
     wet->sheet = other, earlier->sheet = sheet;
     wet->camera_x = earlier->camera_x, wet->camera_y = earlier->camera_y;
-    fl_wet_place_cells(wet);
+    place_cells(wet);
     for (int m = 0; m < wet->n_markers; m++)
         for (int k = 0; k < earlier->n_markers; k++)
             if (fl_region_is_same(wet->marker[m].plan, earlier->marker[k].plan))
                 swap_edges(&wet->marker[m], &earlier->marker[k]);
     wet->at = 0;
-    return fl_wet_show(wet, error);
+    return show(wet, error);
 }
 
 bool fl_wet_begun(const FlWet *wet)

@@ -94,10 +94,4 @@ bool fl_wet_mark_one(void *data, int m, int thread, GError **error);
 /** Lays the fills of a frame that is not painted in wet->laid. */
 bool fl_wet_lay_fills(FlWet *wet, int frame, GError **error);
 
-/** Shows the cells where the camera has moved them by less than a cell. */
-void fl_wet_place_cells(FlWet *wet);
-
-/** Makes the layer of the sheet as it is. */
-bool fl_wet_show(FlWet *wet, GError **error);
-
 #endif

@@ -288,8 +288,8 @@ void fl_wet_sheet_wet(FlWetSheet *sheet, const FlFrontStyle *style, float frames
         cell->edge += share * MAX(mark->edge - cell->edge, 0);
         if (more <= 0)
             continue;
-        const float new = more / (more + 4 * cell->front); // what is left of another front is weak
-        cell->edge += new *MIN(mark->edge - cell->edge, 0);
+        const float fresh = more / (more + 4 * cell->front); // a front that has faded hardly counts
+        cell->edge += fresh * MIN(mark->edge - cell->edge, 0);
         const float seen = 0.02f + 0.98f * fl_ease(-0.5f, 1, cell->edge); // a stain keeps its ink
         add_ink(cell, seen * more, mark->ink, style->granulation);
         cell->line = fl_wet_between(cell->line, mark->line, more / (cell->front + more));
