@@ -20,10 +20,9 @@ typedef struct FlWashPart {
 typedef struct FlWashField {
     FlWash *wash;
     const FlComposeInput *input;
-    float size;      // of its shapes through the film
-    float drops;     // strength of drops of paint
-    float light[2];  // unit vector to the side of the shadow
-    float across[2]; // vector across the passes of the brush
+    float size;     // of its shapes through the film
+    float drops;    // strength of drops of paint
+    float light[2]; // unit vector to the side of the shadow
     FlWashPart *part;
     int n_parts;
     float *planes;      // memory of the planes below and of the parts' weights

@@ -58,16 +58,15 @@ static void find_places(const FlWash *wash, const FlWashPart *part, float scale,
 typedef float Values[FL_WASH_PLANES][FL_NOISE_ROW];
 
 /* Passes of the brush lie across the light's slope, each with a wavering edge. */
-static void find_passes(const FlWashField *field, const Places *at, Values values)
+static void find_passes(const FlWash *wash, const Places *at, Values values)
 {
     static const float wide[2] = {170, 170};
     static const float cell[2] = {90, 60};
-    const FlWash *wash = field->wash;
     float waver[FL_NOISE_ROW];
     noise_at(fl_key(wash->key, KEY_PASS), at, wide, 0, 1, 1, waver);
     noise_at(fl_key(wash->key, KEY_DRY), at, cell, 0, 1, 1, values[FL_WASH_DRY]);
     for (int i = 0; i < at->n; i++) {
-        const float across = field->across[1] * at->y[i] + field->across[0] * at->x[i];
+        const float across = wash->along[0] * at->y[i] - wash->along[1] * at->x[i];
         values[FL_WASH_PASS][i] = across / wash->brush_px + .3f * waver[i];
     }
 }
@@ -224,7 +223,7 @@ static void find_values(const FlWashField *field, const Places *at, Values value
     const FlWash *wash = field->wash;
     noise_at(fl_key(wash->key, KEY_TONE), at, tone, .35f, 2, .5f, values[FL_WASH_TONE]);
     noise_at(fl_key(wash->key, KEY_HUE), at, hue, .5f, 3, .55f, values[FL_WASH_HUE]);
-    find_passes(field, at, values);
+    find_passes(wash, at, values);
     find_fronts(wash, at, values);
     add_drops(field, at, values);
 }

@@ -182,7 +182,7 @@ static void add_region(FlWashField *field, int region)
 
 /* Passes lie along the axis of the first of the regions, in round ones across the light's slope, or
  * as an image of directions has it where it was first seen. */
-static void find_across(FlWashField *field)
+static void find_along(FlWashField *field)
 {
     const FlAnchor *at = &field->wash->painted->anchor;
     const float *light = field->light;
@@ -191,7 +191,6 @@ static void find_across(FlWashField *field)
         angle = at->axis * (float)(G_PI / 180);
     if (field->input->directions.image)
         angle = fl_direction_at(&field->input->directions, at->rest_x, at->rest_y, at->side, angle);
-    field->across[0] = -sinf(angle), field->across[1] = cosf(angle);
     field->wash->along[0] = cosf(angle), field->wash->along[1] = sinf(angle);
 }
 
@@ -213,7 +212,7 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
     field.drops = drops_of(&field);
     field.wash->brush_px = fl_clamp(.5f * field.size, 34, 85);
     field.wash->islands = fl_smooth(.5f * field.size / field.wash->brush_px - 1); // else scratches
-    find_across(&field);
+    find_along(&field);
     const bool made = fl_field_alloc(&field, error) && read_maps(&field, error);
     if (made) {
         fl_field_fill_masks(&field, washes, w, draws);
