@@ -481,8 +481,11 @@ typedef struct Row {
 
 static void find_row(Row *row)
 {
-    row->wash = (FlWash){
-        .style = {.wash = 1, .tide = 1, .passes = 1}, .brush_px = 50, .width = ROW, .height = 1};
+    row->wash = (FlWash){.style = {.wash = 1, .tide = 1, .passes = 1},
+                         .brush_px = 50,
+                         .along = {1},
+                         .width = ROW,
+                         .height = 1};
     for (int k = 0; k < FL_WASH_PLANES; k++)
         row->wash.plane[k] = row->values[k];
     fl_wash_find_tones(&row->wash, row->tones, row->hues);
@@ -541,7 +544,6 @@ static void passes_are_soft_and_slopes_ragged(void)
             row.values[FL_WASH_X][i] = (float)i, row.values[FL_WASH_DRY][i] = -1;
             row.values[FL_WASH_FRONT][i] = 1000, row.values[FL_WASH_ROUGH][i] = .2f * (float)rough;
         }
-        row.wash.along[0] = 1;
         find_row(&row);
         g_test_message("steps up to %.3f", (double)most_step(&row));
         g_assert_true(rough ? most_step(&row) > .06f : most_step(&row) < .04f);
@@ -560,6 +562,34 @@ static void dry_passes_have_ragged_edges(void)
     find_row(&row);
     g_test_message("steps up to %.3f", (double)most_step(&row));
     g_assert_cmpfloat(most_step(&row), >, .05f);
+}
+
+/* The changes of the tone on a way of 17 px amid a pass, across it or along. */
+static float changes_amid_pass(float dry, bool across)
+{
+    Row row = {0};
+    float sum = 0;
+    for (int i = 0; i < ROW; i++) {
+        const float way = 17 * (float)i / ROW;
+        row.values[FL_WASH_PASS][i] = .1f + (across ? way / 50 : 0);
+        row.values[FL_WASH_X][i] = across ? 0 : way, row.values[FL_WASH_DRY][i] = dry;
+        row.values[FL_WASH_FRONT][i] = 1000, row.values[FL_WASH_LINES][i] = 1;
+    }
+    find_row(&row);
+    for (int i = 1; i < ROW; i++)
+        sum += fabsf(row.tones[i] - row.tones[i - 1]);
+    return sum;
+}
+
+static void hairs_of_a_dry_brush_draw_streaks(void)
+{
+    const float streaks = changes_amid_pass(1, true), wet = changes_amid_pass(-1, true);
+    const float along = changes_amid_pass(1, false);
+    g_test_message("the tone changes by %.3f across, %.3f along, %.3f where it is wet",
+                   (double)streaks, (double)along, (double)wet);
+    g_assert_cmpfloat(streaks, >, .1f);
+    g_assert_cmpfloat(along, <, .3f * streaks);
+    g_assert_cmpfloat(wet, <, .01f);
 }
 
 /* The least tone of a dry page of a side, whose brush skips islands of paper if it is large. */
@@ -647,7 +677,6 @@ static void a_heart_is_light(void)
     g_assert_cmpfloat(middle, <, -.1);
 }
 
-/* Drops fall into some of eight pages: of water, which is light within its rim, and of paint. */
 /* The pixels that drops make lighter, and darker, on eight pages of fills a step apart. */
 static void count_spots(int fill, int step, int *light, int *dark)
 {
@@ -663,6 +692,7 @@ static void count_spots(int fill, int step, int *light, int *dark)
     }
 }
 
+/* Drops fall into some of eight pages: of water, which is light within its rim, and of paint. */
 static void drops_leave_light_and_dark_spots(void)
 {
     int light = 0, dark = 0, light_in_white = 0, dark_in_white = 0;
@@ -891,6 +921,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/fronts-have-teeth", fronts_have_teeth);
     g_test_add_func("/wash/passes-are-soft-and-slopes-ragged", passes_are_soft_and_slopes_ragged);
     g_test_add_func("/wash/dry-passes-have-ragged-edges", dry_passes_have_ragged_edges);
+    g_test_add_func("/wash/hairs-of-a-dry-brush-draw-streaks", hairs_of_a_dry_brush_draw_streaks);
     g_test_add_func("/wash/large-shapes-alone-have-islands", large_shapes_alone_have_islands);
     g_test_add_func("/wash/parts-that-move-apart-are-mixed", parts_that_move_apart_are_mixed);
     g_test_add_func("/wash/dots-and-lines-have-none", dots_and_lines_have_none);

@@ -24,6 +24,7 @@ typedef struct Scene {
     float spin;    // of the disk around its middle, radians a frame
     float pace;    // of the disk in the frame before; 0: not known
     float receded; // of its edge until then
+    bool stops;    // the disk, where it is now
     GArray *fronts, *stains, *below;
 } Scene;
 
@@ -77,7 +78,7 @@ static void scene_free(Scene *scene)
     g_free(scene);
 }
 
-/* The marks of a disk that goes from x0 to x1 and grows by `grown`, with the same still to come. */
+/* The marks of a disk that goes from x0 to x1 and grows by `grown`, and goes on unless it stops. */
 static void mark(Scene *scene, float x0, float x1, float grown)
 {
     g_auto(FlMovingEdge) edge = {0};
@@ -85,7 +86,7 @@ static void mark(Scene *scene, float x0, float x1, float grown)
     FlWetShape was = scene->shape;
     draw_disk(x0, RADIUS, scene->before);
     draw_disk(x1, RADIUS + grown, scene->now);
-    draw_disk(x1 + 4 * (x1 - x0), RADIUS + grown, scene->ahead);
+    draw_disk(x1 + (scene->stops ? 0 : 4 * (x1 - x0)), RADIUS + grown, scene->ahead);
     for (int p = 0; p < PIXELS; p++) {
         const float x = (float)(p % SIDE) - x1, y = (float)(p / SIDE) - 100;
         scene->motion[2 * p] = x1 - x0 + x - cosf(scene->spin) * x - sinf(scene->spin) * y;
@@ -168,6 +169,32 @@ static void test_ahead(void)
         g_assert_cmpint(g_array_index(scene->stains, FlStainMark, i).at % SIDE, <, 92);
     g_assert_cmpfloat(charge_of(scene), >, 100);
     scene_free(scene);
+}
+
+/* The px by which the front of a disk is seen ahead of the disk. */
+static float front_ahead(bool stops, float overrun)
+{
+    Scene *scene = scene_new();
+    float most = 0;
+    scene->stops = stops, scene->dials.overrun = overrun;
+    mark(scene, 80, 86, 0);
+    for (guint i = 0; i < scene->fronts->len; i++) {
+        const FlFrontMark *front = &g_array_index(scene->fronts, FlFrontMark, i);
+        if (front->edge > 0)
+            most = MAX(most, -scene->distance[front->at]);
+    }
+    scene_free(scene);
+    return most;
+}
+
+/* A front hardly passes the place where its disk stops: by the overrun. */
+static void test_stop(void)
+{
+    const float goes = front_ahead(false, 5), stops = front_ahead(true, 5);
+    const float none = front_ahead(true, 0);
+    g_test_message("%.1f px ahead, %.1f where it stops, %.1f without overrun", goes, stops, none);
+    g_assert_cmpfloat(stops, <, 0.9f * goes);
+    g_assert_cmpfloat(none, <, 0.5f * stops);
 }
 
 /* The charge of the stains as a share of the area that they have been left on, and their area. */
@@ -542,14 +569,17 @@ static void test_taken_up(void)
     g_assert_cmpfloat(sides, <, 0.9f);
 }
 
-/* The darkness of a stain all of which is so far from its sides. */
-static double darkness_of_depth(float depth)
+/* The darkness of a stain all of which is so far from its sides, below a front if it is wet. */
+static double darkness_of_depth(float depth, bool wet)
 {
     Scene *scene = scene_new();
     mark(scene, 80, 86, 0);
     for (guint i = 0; i < scene->stains->len; i++)
         g_array_index(scene->stains, FlStainMark, i).depth = depth;
     fl_wet_sheet_stain(&scene->sheet, &plain, scene->stains);
+    for (int p = 0; p < PIXELS && wet; p++)
+        if (scene->sheet.cell[p].stain > 0)
+            scene->sheet.cell[p].front = 0.5f, scene->sheet.cell[p].edge = 3;
     const double sum = darkness(scene);
     scene_free(scene);
     return sum;
@@ -557,9 +587,10 @@ static double darkness_of_depth(float depth)
 
 static void test_frayed(void)
 {
-    const double middle = darkness_of_depth(14), sides = darkness_of_depth(5);
+    const double middle = darkness_of_depth(14, false), sides = darkness_of_depth(5, false);
     g_assert_cmpfloat(sides, >, 0.05 * middle);
     g_assert_cmpfloat(sides, <, 0.8 * middle);
+    g_assert_cmpfloat(darkness_of_depth(5, true), >, 0.97 * darkness_of_depth(14, true));
 }
 
 /* A cell after a front that has not come to it, over a stain and so much of an earlier front. */
@@ -590,6 +621,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/wet/a-front-runs-ahead-and-a-stain-stays-behind", test_ahead);
+    g_test_add_func("/wet/a-front-ends-where-its-shape-stops", test_stop);
     g_test_add_func("/wet/black-paint-leaves-a-light-stain", test_black);
     g_test_add_func("/wet/a-quick-shape-leaves-less", test_quick);
     g_test_add_func("/wet/a-turn-after-quick-motion-leaves-less", test_turn);
