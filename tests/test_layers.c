@@ -136,6 +136,27 @@ static void thin_paint_that_knocks_out_shows_paper_and_a_glaze_what_is_below(voi
     }
 }
 
+/* Its look over paper stays, and the paper gives way to what is below. */
+static void paint_that_yields_hides_no_more_than_it_knocks_out(void)
+{
+    for (int n = 1; n <= 2; n++) {
+        uint8_t all[N], half[N], out[4 * N];
+        memset(all, 255, N), memset(half, 128, N);
+        FlLayer layers[2] = {flat_layer(all, 127, 191, 255), flat_layer(all, 255, 255, 0)};
+        layers[0].knockout = half, layers[0].yields = true;
+        if (n == 2) { // yellow below it
+            const FlLayer upper = layers[0];
+            layers[0] = layers[1], layers[1] = upper;
+        }
+        resolve(layers, n, &plain);
+        fl_layers_compose(layers, n, &(FlBackdrop){.flat = {255, 255, 255, 255}}, W, H, false, out);
+        const uint8_t expected[3] = {127, 191, n == 1 ? 255 : 128};
+        for (int c = 0; c < 3; c++)
+            g_assert_cmpint(abs(out[c] - expected[c]), <=, 2);
+        layers_clear(layers, 2);
+    }
+}
+
 static void paint_below_runs_on_under_a_rim_without_body(void)
 {
     uint8_t all[N], knockout[N], out[4 * N];
@@ -430,6 +451,8 @@ int main(int argc, char **argv)
                     an_overlay_of_partial_opacity_tints_what_is_below);
     g_test_add_func("/layers/thin-paint-that-knocks-out-shows-paper-and-a-glaze-what-is-below",
                     thin_paint_that_knocks_out_shows_paper_and_a_glaze_what_is_below);
+    g_test_add_func("/layers/paint-that-yields-hides-no-more-than-it-knocks-out",
+                    paint_that_yields_hides_no_more_than_it_knocks_out);
     g_test_add_func("/layers/paint-below-runs-on-under-a-rim-without-body",
                     paint_below_runs_on_under_a_rim_without_body);
     g_test_add_func("/layers/an-area-is-where-the-shape-is-and-no-more",

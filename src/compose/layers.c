@@ -99,7 +99,7 @@ static void lower_opacity(const FlLayersAbove *above, int limit, uint8_t rgba[4]
 
 /**
  * Columns of row y of a layer that yields: it hides no more of the layers below than it knocks out,
- * and no more of it has to be stored below the paint above than an alpha of 255.
+ * and below the paint above it needs an alpha of at most 255.
  */
 static void yield_columns(const FlLayer *layer, const FlLayersAbove *above, int y,
                           FlColumns columns)

@@ -11,7 +11,7 @@
 #define FIT_STEPS 15
 #define LEAST_CONTOUR 6 // cells of contour of a part that flows
 #define LEAP .05f       // of the page's larger side
-#define BORN 2.5f       // cells outside of where the fluid was to come
+#define BORN 2.5f       // cells outside the shape that motion foretells, where a puff begins
 #define NONE (-1)
 
 /* Cells lie on the page, so that they are the same for other parts of it. With a margin and a
