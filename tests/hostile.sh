@@ -38,6 +38,8 @@ svg x.svg "$shape$(cat padding)"
 limited 'a file that is too large is an error' drawing 'MiB of a drawing'
 gzip -9c x.svg >y.svg && mv y.svg x.svg # gzip is found by its first bytes
 limited 'so is one that is too large when unpacked' drawing 'MiB of a drawing'
+svg x.svg "<defs><path id='a' d='M1 1h30v30h-30z$(head -c 400000 padding)'/></defs>$(printf "<use href='#a'/>%.0s" 1 2 3)"
+limited 'so is one that <use> makes too large' drawing 'MiB of a drawing'
 timeout 20 ffmpeg -v error -f lavfi -i color=red:s=1200x1000 -frames:v 1 big.png </dev/null 2>err
 svg x.svg "$shape<image href='big.png' width='30' height='30'/>"
 limited 'an image with too many pixels is an error' image 'x.svg: 1.2 million pixels of an image'

@@ -1,12 +1,11 @@
 #include "svg/cascade.h"
 
-#include "base/limits.h"
 #include "svg/css_animation.h"
 #include "svg/css_colour.h"
 #include "svg/css_effects.h"
 #include "svg/css_properties.h"
 #include "svg/css_sheet.h"
-#include "svg/normalise.h"
+#include "svg/use.h"
 #include <math.h>
 #include <string.h>
 
@@ -21,7 +20,6 @@ typedef struct Style {
 } Style;
 
 typedef struct Cascade {
-    xmlDoc *doc;
     const char *path;
     int number;
     FlWarnings *warnings;
@@ -31,9 +29,7 @@ typedef struct Cascade {
     GHashTable *said; // texts of the warnings that were given
     double seconds;   // the moment that is shown; NAN: animations are left out
     FlFilmLength *length;
-    GHashTable *ids;  // id -> xmlNode, the first of that id
-    int n_copied;     // elements
-    GPtrArray *shows; // <use> with a copy, which become <g> when all selectors have been matched
+    GHashTable *copies; // <use> -> what it shows
     int n_clips;
 } Cascade;
 
@@ -439,109 +435,6 @@ static bool animate(Cascade *c, const xmlNode *node, GArray *values, const Style
     return animations != NULL;
 }
 
-/* ---- what <use> shows ------------------------------------------------------------------------ */
-
-/* Each <use> gets a copy of what it shows before any value is written, so that the copy inherits
- * from the <use>, variables included. In clip paths, which have no groups, librsvg resolves it. */
-
-/** The elements that the <use> around show, the innermost first. */
-typedef struct Shown {
-    const struct Shown *around;
-    const xmlNode *node;
-} Shown;
-
-/** Points an element and those in it to where rules are matched, and puts their ids aside, which
- * stay unique. Returns: how many they are. */
-static int link_copy(xmlNode *copy, const xmlNode *from)
-{
-    int n = 1;
-    g_autoptr(xmlChar) id = fl_attribute(copy, "id");
-    copy->_private = from->_private ? from->_private : (xmlNode *)from;
-    if (id) {
-        fl_set_attribute(copy, "id", NULL);
-        fl_set_attribute(copy, FL_COPIED_ID, (const char *)id);
-    }
-    const xmlNode *child = xmlFirstElementChild((xmlNode *)from);
-    FL_EACH_ELEMENT (to, copy) {
-        n += link_copy(to, child);
-        child = xmlNextElementSibling((xmlNode *)child);
-    }
-    return n;
-}
-
-/** What a <use> shows and is to be copied; NULL: nothing, or fl_document_normalise() tells why. */
-static const xmlNode *target_of(const Cascade *c, const xmlNode *use, const Shown *around,
-                                int depth)
-{
-    const xmlNode *target = fl_use_is_drawn(use) ? fl_shown_by_use(use, c->ids) : NULL;
-    for (const Shown *s = around; s && target; s = s->around)
-        target = s->node == target ? NULL : target;
-    for (const xmlNode *at = use; at && target; at = at->parent)
-        target = at == target ? NULL : target;
-    return c->n_copied > fl_limit(FL_LIMIT_ELEMENTS) || depth > fl_limit(FL_LIMIT_DEPTH) ? NULL
-                                                                                         : target;
-}
-
-/** The copy of what it shows in a <use>; NULL: it has none yet. */
-static xmlNode *copy_in(xmlNode *use, const xmlNode *target)
-{
-    xmlNode *copy = target ? xmlLastElementChild(use) : NULL;
-    return copy && copy->_private == target ? copy : NULL;
-}
-
-static void copy_shown(Cascade *c, xmlNode *node, const Shown *around, int depth)
-{
-    FL_EACH_ELEMENT (child, node) {
-        const xmlNode *target = fl_is(child, "use") ? target_of(c, child, around, depth) : NULL;
-        const Shown inner = {around, target};
-        if (target && !copy_in(child, target)) {
-            xmlNode *copy = xmlDocCopyNode((xmlNode *)target, c->doc, 1);
-            c->n_copied += link_copy(copy, target);
-            xmlAddChild(child, copy);
-        }
-        if (!fl_is(child, "clipPath"))
-            copy_shown(c, child, target ? &inner : around, depth + 1);
-    }
-}
-
-/** Gives the copy of what a <use> shows its size. Returns: false if it is no <use> with a copy. */
-static bool show_copy(const Cascade *c, xmlNode *use)
-{
-    xmlNode *copy = fl_is(use, "use") ? copy_in(use, fl_shown_by_use(use, c->ids)) : NULL;
-    if (!copy)
-        return false;
-    fl_use_show(use, copy);
-    g_ptr_array_add(c->shows, use);
-    return true;
-}
-
-/** Makes a <use> with a copy, which is its last child, a group that shows only that. */
-static void make_group(xmlNode *use)
-{
-    FL_EACH_ELEMENT (child, use)
-        if (xmlNextElementSibling(child))
-            fl_declare(child, "display:none");
-    xmlNodeSetName(use, (const xmlChar *)"g");
-}
-
-/** Moves what a <use> shows by its x and y, which come after its transform. */
-static void place_copy(xmlNode *use, const FlCssUnits *units)
-{
-    g_autoptr(xmlChar) x = fl_attribute(use, "x"), y = fl_attribute(use, "y");
-    double right, down;
-    if (!x || !fl_css_number((const char *)x, units, units->width, &right))
-        right = 0;
-    if (!y || !fl_css_number((const char *)y, units, units->height, &down))
-        down = 0;
-    const FlAffine own = fl_affine_of(use), move = {1, 0, 0, 1, right, down};
-    const FlAffine both = fl_affine_multiply(&own, &move);
-    g_autofree char *text = fl_affine_text(&both);
-    fl_set_attribute(use, "x", NULL);
-    fl_set_attribute(use, "y", NULL);
-    if (right != 0 || down != 0)
-        fl_set_attribute(use, "transform", text);
-}
-
 /* ---- writing --------------------------------------------------------------------------------- */
 
 /** Converts attributes that are properties as well, where librsvg would not understand them. */
@@ -663,14 +556,17 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     if (values->len > 0 || own->len > 0)
         fl_set_attribute(node, "style", text->str);
     g_string_free(text, TRUE);
-    const bool shows = show_copy(c, node);
-    style.context = shows ? node : style.context;
+    xmlNode *copy = g_hash_table_lookup(c->copies, node);
+    if (copy) {
+        fl_use_give_size(node, copy);
+        style.context = node;
+    }
     if (!fl_is(node, "foreignObject"))
         FL_EACH_ELEMENT (child, node)
             visit(c, child, &style);
     const char *left_out = fl_css_effects_apply(&effects, node, &style.units, &c->n_clips);
-    if (shows)
-        place_copy(node, &style.units);
+    if (copy)
+        fl_use_place(node, &style.units);
     if (left_out)
         warn(c, left_out, fl_css_effects_get(&effects, left_out), "cannot be drawn");
     g_clear_pointer(&style.variables, g_hash_table_unref);
@@ -708,8 +604,8 @@ static FlCssUnits page_units(const xmlNode *root)
     return style.units;
 }
 
-void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFilmLength *length,
-                GPtrArray *files, FlWarnings *warnings)
+bool fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFilmLength *length,
+                GPtrArray *files, FlWarnings *warnings, GError **error)
 {
     xmlNode *root = xmlDocGetRootElement(doc);
     const FlCssUnits units = page_units(root);
@@ -717,10 +613,10 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
     g_autoptr(FlCssSheet) sheet = fl_css_sheet_take(doc, path, number, size, files, warnings);
     g_autoptr(GHashTable) rules = index_rules(sheet->rules);
     g_autoptr(GHashTable) said = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
-    g_autoptr(GHashTable) ids = fl_document_ids(doc);
-    g_autoptr(GPtrArray) shows = g_ptr_array_new();
-    Cascade c = {.doc = doc,
-                 .path = path,
+    g_autoptr(GHashTable) copies = fl_uses_copy(doc, path, error);
+    if (!copies)
+        return false;
+    Cascade c = {.path = path,
                  .number = number,
                  .warnings = warnings,
                  .sheet = sheet,
@@ -728,16 +624,18 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
                  .said = said,
                  .seconds = seconds,
                  .length = length,
-                 .ids = ids,
-                 .shows = shows};
-    copy_shown(&c, root, NULL, 0);
+                 .copies = copies};
     visit(&c, root,
           &(Style){
               .variables = sheet->initial, .own = sheet->own, .units = units, .colour = "black"});
-    for (guint i = 0; i < shows->len; i++)
-        make_group(shows->pdata[i]);
+    GHashTableIter iter;
+    gpointer use;
+    g_hash_table_iter_init(&iter, copies);
+    while (g_hash_table_iter_next(&iter, &use, NULL)) // all selectors have been matched
+        fl_use_make_group(use);
     fl_css_keep_strokes(root, &units);
     if (c.work.steps > FL_SELECTOR_STEPS)
         fl_warnings_add(warnings, path, number, NULL,
                         "its selectors take too long to match; the rest of the styles is left out");
+    return true;
 }

@@ -13,9 +13,11 @@
  * length: collects the ends and loops of CSS animations; may be NULL.
  *
  * The real paths of imported sheets are added to `files`. Each kind of declaration that is left
- * out causes one warning.
+ * out causes one warning. What a <use> shows is copied into it, and the <use> becomes a <g>.
+ *
+ * Returns: false with FL_ERROR_LIMIT if these copies are too many or too large.
  */
-void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFilmLength *length,
-                GPtrArray *files, FlWarnings *warnings);
+bool fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFilmLength *length,
+                GPtrArray *files, FlWarnings *warnings, GError **error);
 
 #endif

@@ -71,12 +71,6 @@ char *fl_href(const xmlNode *node)
     return plain ? g_strdup((const char *)plain) : fl_foreign_attribute(node, "href");
 }
 
-const xmlNode *fl_shown_by_use(const xmlNode *use, GHashTable *ids)
-{
-    g_autofree char *href = fl_href(use);
-    return href && *href == '#' ? g_hash_table_lookup(ids, href + 1) : NULL;
-}
-
 char *fl_property(const xmlNode *node, const char *name)
 {
     const xmlAttr *own = NULL, *style = NULL; // looked for at once, since most elements have none

@@ -68,10 +68,6 @@ bool fl_view_box(const xmlNode *node, double box[4]);
 /** An attribute with any prefix, be it declared or not, trimmed; NULL if absent. g_free(). */
 char *fl_foreign_attribute(const xmlNode *node, const char *name);
 
-/** The element of `ids`, see fl_document_ids(), that a <use> shows; NULL: it is in another file, or
- * missing. */
-const xmlNode *fl_shown_by_use(const xmlNode *use, GHashTable *ids);
-
 /** Visits the elements among the children of a node, which stay in their places. */
 #define FL_EACH_ELEMENT(child, node)                                                               \
     for (xmlNode *child = xmlFirstElementChild((xmlNode *)(node)); child;                          \

@@ -143,12 +143,12 @@ static void enlarge(xmlNode *root, const xmlNode *node)
 static void embed_drawing(const Check *check, xmlNode *node, xmlAttr *a, const char *href,
                           xmlDoc *doc)
 {
-    if (doc)
-        fl_cascade(doc, check->path, check->number, NAN, NULL, check->files, check->warnings);
-    if (!doc || !fl_document_mend(doc, check->path, NULL)) {
+    if (!doc || !fl_cascade(doc, check->path, check->number, NAN, NULL, check->files,
+                            check->warnings, NULL)) {
         warn(check, node, href, "cannot be read and is left out");
         return;
     }
+    fl_document_mend(doc);
     enlarge(xmlDocGetRootElement(doc), node);
     size_t n = 0;
     g_autofree char *plain = fl_document_text(doc, &n);

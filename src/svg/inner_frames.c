@@ -126,23 +126,27 @@ static double common_period(const GArray *loops, bool *cut)
     return *cut ? MIN(longest, FL_LONGEST_LOOP) : seconds;
 }
 
-/** The length of the animations in a document, which this changes; 0 without animations. */
-static double length_of(xmlDoc *doc, const char *path, bool *cut)
+/** Finds the length of the animations in a document, which this changes; 0 without animations. */
+static bool find_length(xmlDoc *doc, const char *path, FlInnerFrames *frames, GError **error)
 {
     g_autoptr(GArray) loops = g_array_new(FALSE, FALSE, sizeof(double));
     g_autoptr(GPtrArray) files = g_ptr_array_new_with_free_func(g_free);
     FlFilmLength length = {0, loops};
     fl_smil_apply(doc, 0, &length);
-    fl_cascade(doc, path, 0, 0, &length, files, NULL);
-    *cut = false;
-    return length.end > 0 ? length.end : loops->len > 0 ? common_period(loops, cut) : 0;
+    if (!fl_cascade(doc, path, 0, 0, &length, files, NULL, error))
+        return false;
+    frames->seconds = length.end > 0   ? length.end
+                      : loops->len > 0 ? common_period(loops, &frames->cut)
+                                       : 0;
+    return true;
 }
 
 static bool frames_in_time(xmlDoc *doc, const char *path, const FlMoments *moments,
                            FlInnerFrames *frames, GError **error)
 {
     g_autoptr(xmlDoc) copy = xmlCopyDoc(doc, 1);
-    frames->seconds = length_of(copy, path, &frames->cut);
+    if (!find_length(copy, path, frames, error))
+        return false;
     const double end = moments->to > 0 ? moments->to : frames->seconds;
     const double n = round((end - moments->from) * moments->fps);
     frames->n = (int)CLAMP(n, 1, FL_MOST_INNER_FRAMES);

@@ -3,6 +3,7 @@
 #include "svg/document.h"
 #include "svg/labels.h"
 #include "svg/normalise.h"
+#include "svg/use.h"
 #include <string.h>
 
 /** The lists that a leaf inherits from its groups; they grow inwards and are cut back. */

@@ -1,6 +1,5 @@
 #include "svg/passes.h"
 
-#include "base/limits.h"
 #include "svg/css_scan.h"
 #include "svg/css_value.h"
 #include "svg/document.h"
@@ -15,7 +14,6 @@
 typedef struct Mend {
     GHashTable *ids; // id -> xmlNode, the first of that id
     int n_made;      // names
-    int n_copied;    // elements that <use> show
 } Mend;
 
 /* ---- drop shadows ---------------------------------------------------------------------------- */
@@ -336,7 +334,6 @@ static void mend(Mend *m, xmlNode *node)
 {
     static const char *const gradients[] = {"linearGradient", "radialGradient", NULL};
     static const char *const with_points[] = {"polygon", "polyline", NULL};
-    m->n_copied += node->_private != NULL;
     if (node->ns && g_str_has_prefix((const char *)node->name, "fe"))
         mend_numbers(node);
     if (fl_is(node, "feDropShadow"))
@@ -361,10 +358,9 @@ static void mend(Mend *m, xmlNode *node)
     }
 }
 
-bool fl_document_mend(xmlDoc *doc, const char *path, GError **error)
+void fl_document_mend(xmlDoc *doc)
 {
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
     Mend m = {.ids = ids};
     mend(&m, xmlDocGetRootElement(doc));
-    return fl_limit_check(FL_LIMIT_ELEMENTS, m.n_copied, path, error);
 }

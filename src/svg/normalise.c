@@ -1,6 +1,7 @@
 #include "svg/normalise.h"
 
 #include "base/limits.h"
+#include "svg/use.h"
 #include <string.h>
 
 typedef struct Work {
@@ -111,48 +112,6 @@ static void resolve_switch(xmlNode *node)
     }
     xmlAddChild(node, defs);
     xmlNodeSetName(node, (const xmlChar *)"g");
-}
-
-/** Removes an attribute. Returns: its value, to be freed with xmlFree(), or NULL. */
-static xmlChar *take(xmlNode *node, const char *name)
-{
-    xmlChar *value = fl_attribute(node, name);
-    if (value)
-        fl_set_attribute(node, name, NULL);
-    return value;
-}
-
-static bool is_zero(const xmlNode *node, const char *name)
-{
-    g_autoptr(xmlChar) length = fl_attribute(node, name);
-    return length && g_ascii_strtod((const char *)length, NULL) == 0;
-}
-
-bool fl_use_is_drawn(const xmlNode *use)
-{
-    return !is_zero(use, "width") && !is_zero(use, "height");
-}
-
-/** The size that <use> gives, if any, or that of the symbol itself. */
-static void give_size(xmlNode *shown, const char *name, const xmlChar *size, bool symbol)
-{
-    if (size || (symbol && !xmlHasProp(shown, (const xmlChar *)name)))
-        fl_set_attribute(shown, name, size ? (const char *)size : "100%");
-}
-
-void fl_use_show(xmlNode *use, xmlNode *shown)
-{
-    g_autoptr(xmlChar) width = take(use, "width"), height = take(use, "height");
-    const bool symbol = fl_is(shown, "symbol");
-    g_autofree char *overflow = symbol ? fl_property(shown, "overflow") : NULL;
-    if (symbol)
-        xmlNodeSetName(shown, (const xmlChar *)"svg");
-    if (symbol && !overflow)
-        fl_set_attribute(shown, "overflow", "hidden"); // a browser's own style sheet says so
-    if (symbol || fl_is(shown, "svg")) {
-        give_size(shown, "width", width, symbol);
-        give_size(shown, "height", height, symbol);
-    }
 }
 
 /** Of <use>, those are left that refer to another file, and those that show nothing. */

@@ -4,9 +4,6 @@
 
 #include "svg/document.h"
 
-/** The attribute with the id of the element that a <use> copied: the copy itself has no id. */
-#define FL_COPIED_ID "data-fl-id"
-
 #define FL_WHOLE_ALL "*" // in place of an id: the document is one leaf
 
 #define FL_GROUP_ID "fl-group-" // and a number: the ids that groups without one get
@@ -28,13 +25,6 @@ bool fl_is_whole(const xmlNode *node, const char *const *whole);
  */
 bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *path, int number,
                            FlWarnings *warnings, GError **error);
-
-/** Gives the child `shown` of a <use>, a copy of the element that it refers to, the size of <use>;
- * a <symbol> becomes a nested <svg>. */
-void fl_use_show(xmlNode *use, xmlNode *shown);
-
-/** Returns: false if a side of 0 hides what a <use> shows. */
-bool fl_use_is_drawn(const xmlNode *use);
 
 /** Returns: true if a <switch> may show this child. */
 bool fl_is_eligible(const xmlNode *node);

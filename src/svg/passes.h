@@ -28,10 +28,8 @@ bool fl_images_check(xmlDoc *doc, const char *path, int number, GPtrArray *files
  * Rewrites what librsvg leaves out and a browser draws: <feDropShadow>, clips of clip paths,
  * gradients of no length, lists of points that break. Languages in a <switch> are resolved, and a
  * <mask> has no mask.
- *
- * Returns: false with FL_ERROR_LIMIT if the copies are too many.
  */
-bool fl_document_mend(xmlDoc *doc, const char *path, GError **error);
+void fl_document_mend(xmlDoc *doc);
 
 /* ---- filters that read the backdrop, as old versions of Inkscape wrote them ------------------ */
 

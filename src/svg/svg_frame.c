@@ -48,9 +48,9 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
         set_canvas(xmlDocGetRootElement(svg->doc), &options->canvas);
     svg->files = g_ptr_array_new_with_free_func(g_free);
     const double seconds = options->from == FL_FRAMES_TIME ? options->seconds : NAN;
-    fl_cascade(svg->doc, path, number, seconds, NULL, svg->files, warnings);
-    if (!fl_document_mend(svg->doc, path, error))
+    if (!fl_cascade(svg->doc, path, number, seconds, NULL, svg->files, warnings, error))
         return NULL;
+    fl_document_mend(svg->doc);
     fl_document_drop_background(svg->doc, path, number, warnings);
     fl_lint(svg->doc, path, number, warnings);
     if (!fl_images_check(svg->doc, path, number, svg->files, warnings, error))

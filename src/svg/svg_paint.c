@@ -99,10 +99,8 @@ static Other *read_other(FlSvg *svg, const char *file)
 {
     Other *other = g_new0(Other, 1);
     other->doc = fl_document_read(file, 1, NULL, NULL);
-    if (other->doc) {
-        fl_cascade(other->doc, file, 1, NAN, NULL, svg->files, NULL);
+    if (other->doc && fl_cascade(other->doc, file, 1, NAN, NULL, svg->files, NULL, NULL))
         other->ids = fl_document_ids(other->doc);
-    }
     return other;
 }
 

@@ -1,0 +1,34 @@
+/* <use>, which shows a copy of another element. */
+#ifndef FLUIDY_SVG_USE_H
+#define FLUIDY_SVG_USE_H
+
+#include "svg/css_value.h"
+#include "svg/document.h"
+
+/** The attribute with the id of the element that a <use> copied: the copy itself has no id. */
+#define FL_COPIED_ID "data-fl-id"
+
+/** Returns: false if a side of 0 hides what a <use> shows. */
+bool fl_use_is_drawn(const xmlNode *use);
+
+/**
+ * Gives each <use> a copy of what it shows as its last child, so that the copy inherits from the
+ * <use>, variables included. The _private of a copied element is the one that was written, at which
+ * rules are matched. A <use> that shows itself gets no copy, nor do those in clip paths, which have
+ * no groups: librsvg resolves them.
+ *
+ * Returns: each <use> with its copy; NULL with FL_ERROR_LIMIT if the copies are too many or too
+ * large.
+ */
+GHashTable *fl_uses_copy(xmlDoc *doc, const char *path, GError **error);
+
+/** Gives a copy the size that its <use> says; a <symbol> becomes a nested <svg>. */
+void fl_use_give_size(xmlNode *use, xmlNode *copy);
+
+/** Moves what a <use> shows by its x and y, which come after its transform. */
+void fl_use_place(xmlNode *use, const FlCssUnits *units);
+
+/** Makes a <use> with a copy a group that shows only that. */
+void fl_use_make_group(xmlNode *use);
+
+#endif
