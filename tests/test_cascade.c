@@ -341,6 +341,7 @@ static void what_use_shows_has_the_variables_of_use(void)
     assert_value("<style>use:nth-of-type(2){fill:#123456}</style>" TWO_USES, "fill", "#123456");
     assert_value("<style>g + use{fill:#123456}</style>" TWO_USES, "fill", "");
     assert_value("<use href='#b'><path id='a'/></use><path id='b'/>", "display", "none");
+    assert_value("<use id='a' href='#b'><path/></use>", "display", "none");
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
     g_free(computed("<g id='a' fill='var(--c, red)'><use href='#a'/></g>", "a", "fill", warnings));
     g_assert_cmpint(fl_warnings_count(warnings), ==, 1); // it shows itself

@@ -114,7 +114,8 @@ static void resolve_switch(xmlNode *node)
     xmlNodeSetName(node, (const xmlChar *)"g");
 }
 
-/** Of <use>, those are left that refer to another file, and those that show nothing. */
+/** Of <use>, those are left that refer to another file, and those that show nothing, which are
+ * hidden with the elements written in them. */
 static void resolve_use(const Work *work, xmlNode *use)
 {
     g_autofree char *href = fl_href(use);
@@ -125,7 +126,7 @@ static void resolve_use(const Work *work, xmlNode *use)
     if (href && g_hash_table_contains(work->ids, href + 1) && fl_use_is_drawn(use))
         fl_warnings_add(work->warnings, work->path, work->number, made ? NULL : (const char *)id,
                         "<use> of “%s” shows itself and is left out", href);
-    xmlNodeSetName(use, (const xmlChar *)"g");
+    fl_declare(use, "display:none");
 }
 
 static bool is_shallow(const Work *work, const xmlNode *node, GError **error)

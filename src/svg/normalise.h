@@ -17,9 +17,8 @@ int fl_document_name_groups(xmlDoc *doc);
 bool fl_is_whole(const xmlNode *node, const char *const *whole);
 
 /**
- * Makes each <switch> a <g> with its first eligible child, and each <use> that is left a <g>
- * without content: a cycle is not drawn, with a warning. Elements of `whole`, see fl_is_whole(),
- * stay unchanged.
+ * Makes each <switch> a <g> with its first eligible child, and hides each <use> that shows nothing;
+ * one that shows itself causes a warning. Elements of `whole`, see fl_is_whole(), stay unchanged.
  *
  * Returns: false with FL_ERROR_LIMIT if elements lie too deep.
  */
