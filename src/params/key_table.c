@@ -48,7 +48,9 @@ static bool read_word(const FlTableKey *key, const char *text, int *field)
     return known;
 }
 
-int fl_table_key_read(const FlTableKey *key, const char *text, void *object)
+/* Returns: the number of values, which are in the key's field now; -1 if the text is invalid, and
+ * the field may have changed then. */
+static int read_value(const FlTableKey *key, const char *text, void *object)
 {
     void *const field = (char *)object + key->offset;
     switch (key->type) {
@@ -77,7 +79,8 @@ static char *one_of(const char *name, const char *const *names)
     return g_strdup_printf("one of %s%s", list, tail);
 }
 
-char *fl_table_key_expects(const FlTableKey *key, const char *text)
+/* The values that a key takes, in words. To be freed. */
+static char *expected_of(const FlTableKey *key, const char *text)
 {
     if (key->type == FL_KEY_COLOUR)
         return g_strdup("a colour such as #f4efe6");
@@ -121,10 +124,10 @@ const FlTableKey *fl_key_section_set(FlKeySection *section, const char *name, co
         fl_fail(error, section->mistake, "%s is given a second time", name);
         return NULL;
     }
-    section->n_values[i] = fl_table_key_read(key, value, section->object);
+    section->n_values[i] = read_value(key, value, section->object);
     if (section->n_values[i] > 0)
         return key;
-    g_autofree char *expected = fl_table_key_expects(key, value);
+    g_autofree char *expected = expected_of(key, value);
     fl_fail(error, section->mistake, "%s = %s: expected %s", name, value, expected);
     return NULL;
 }
@@ -175,20 +178,14 @@ bool fl_key_sections_read(const char *path, FlKeySection *section, int n, GError
     return fl_key_file_read(path, &calls, error);
 }
 
-static char *numbers_text(const FlTableKey *key, const void *field, int n, const char *format)
+static char *number_text(double number)
 {
-    GString *text = g_string_new(NULL);
-    char number[G_ASCII_DTOSTR_BUF_SIZE];
-    for (int i = 0; i < n; i++) {
-        const double x = key->type == FL_KEY_INTEGER ? (double)((const int *)field)[i]
-                                                     : (double)((const float *)field)[i];
-        g_string_append_printf(text, "%s%s", i ? "," : "",
-                               g_ascii_formatd(number, sizeof number, format, x));
-    }
-    return g_string_free(text, FALSE);
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    return g_strdup(g_ascii_formatd(text, sizeof text, "%.6g", number));
 }
 
-char *fl_table_key_text(const FlTableKey *key, const void *object, int n, const char *format)
+/* The value of a key's field, to be freed. */
+static char *value_text(const FlTableKey *key, const void *object)
 {
     const void *const field = (const char *)object + key->offset;
     switch (key->type) {
@@ -197,8 +194,9 @@ char *fl_table_key_text(const FlTableKey *key, const void *object, int n, const 
     case FL_KEY_COLOUR:
         return fl_text_of_colour(field);
     case FL_KEY_NUMBER:
+        return number_text((double)*(const float *)field);
     case FL_KEY_INTEGER:
-        return numbers_text(key, field, n, format);
+        return number_text(*(const int *)field);
     case FL_KEY_SWITCH:
         return g_strdup(*(const bool *)field ? "on" : "off");
     case FL_KEY_WORD:
@@ -223,7 +221,7 @@ void fl_key_table_write(const FlKeyTable *table, const void *object, const void 
         const FlTableKey *key = &table->key[i];
         if (key->flag & flags || is_usual(key, object, usual))
             continue;
-        g_autofree char *value = fl_table_key_text(key, object, 1, "%.6g");
+        g_autofree char *value = value_text(key, object);
         g_string_append_printf(text, "%s = %s\n", key->name, value);
     }
 }

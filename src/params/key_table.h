@@ -39,16 +39,6 @@ typedef struct FlKeyTable {
 
 #define FL_MOST_KEYS 32
 
-/** Reads a value, or several, into the key's field. Returns: their number; -1 if the text is
- * invalid, and the field may have changed then. */
-int fl_table_key_read(const FlTableKey *key, const char *text, void *object);
-
-/** The values that a key takes, in words, for a message about an invalid text. To be freed. */
-char *fl_table_key_expects(const FlTableKey *key, const char *text);
-
-/** The n values of a key's field, numbers in this format of printf(). To be freed. */
-char *fl_table_key_text(const FlTableKey *key, const void *object, int n, const char *format);
-
 /** A section that is read. */
 typedef struct FlKeySection {
     const char *name;
