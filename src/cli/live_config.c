@@ -114,14 +114,14 @@ static bool is_output(const FlOption *option)
     return option->type == FL_OPTION_PATH && option->bytes == FL_BYTES_NEVER;
 }
 
-/* The config that choices are written into; a look is not, but included. */
+/* The config that choices are written into; a look is included instead. */
 static const char *given_config(const FlLiveConfig *config)
 {
     const char *given = config->args->render.config;
     return given && !fl_look_named(given) ? given : NULL;
 }
 
-/* That of the command line; else the program mentions one of this name beside the drawing. */
+/* The config of the command line; without one, fluidy-svg.conf beside the drawing. */
 static char *path_of(const FlLiveConfig *config)
 {
     const char *given = given_config(config), *input = config->args->render.inputs[0];

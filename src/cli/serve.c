@@ -6,11 +6,11 @@
 #include "live_drop.h"
 #include "live_film.h"
 #include "params/options.h"
+#include "params/text.h"
 
 #include <errno.h>
 #include <libsoup/soup.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -227,14 +227,22 @@ static gboolean on_tick(void *data)
 
 /* ---- messages of pages ---------------------------------------------------------------------- */
 
+/* A whole number from `least` to `most`; any other text is `least`. */
+static int number_of(const char *text, int least, int most)
+{
+    int number = least;
+    (void)fl_text_integer(text, least, most, &number);
+    return number;
+}
+
 /* paint, GENERATION of the settings, WORK, FRAME, STYLE, REGION: a job. */
 static void take_paint(Live *live, SoupWebsocketConnection *page, char **part)
 {
     FlLiveJob *job = g_new(FlLiveJob, 1);
-    *job = (FlLiveJob){.work = CLAMP(atoi(part[2]), FL_LIVE_DRAFT, FL_LIVE_DRAWING),
-                       .generation = MAX(atoi(part[1]), 0),
-                       .frame = atoi(part[3]),
-                       .style = atoi(part[4]),
+    *job = (FlLiveJob){.work = number_of(part[2], FL_LIVE_DRAFT, FL_LIVE_DRAWING),
+                       .generation = number_of(part[1], 0, G_MAXINT),
+                       .frame = number_of(part[3], 0, G_MAXINT),
+                       .style = number_of(part[4], 0, G_MAXINT),
                        .region = *part[5] ? g_strdup(part[5]) : NULL,
                        .asker = g_object_ref(page)};
     fl_live_film_ask(live->film, job);
@@ -355,7 +363,8 @@ static void protect(SoupServerMessage *message)
         soup_message_headers_replace(sent, headers[k][0], headers[k][1]);
 }
 
-/* Before the body is read. What gets a status here goes no further, and its body is not kept. */
+/* Before the body is read. A request that gets a status here goes no further, and its body is
+ * not kept. */
 static void on_headers(SoupServer *server, SoupServerMessage *message, const char *path,
                        GHashTable *query, void *data)
 {
