@@ -423,7 +423,8 @@ sed -i "s/hold=2/hold=0/" named.d/w_000?.svg
 printf '[region disc-*]\nhold = 1\n' >named.conf
 "$program" named.d -s 01 --dry-run 2>err; grep -q 'layer “Disc hold=0 carry=0.3”: hold: “0” is not' err &&
     "$program" named.d -s 01 -c named.conf --dry-run 2>err && sed -i "s/hold=0/style=blom/" named.d/w_000?.svg &&
-    ! "$program" named.d -s 01 --dry-run 2>err && grep -q 'layer “Disc style=blom carry=0.3”: no style “blom”' err
+    ! "$program" named.d -s 01 --dry-run 2>err && grep -q 'layer “Disc style=blom carry=0.3”: no style “blom”' err &&
+    ! "$program" all.d -s Char --dry-run 2>err && grep -q '^fluidy-svg: no style “Char”' err
 result $? 'a mistake in it names the layer, and a section of the region wins'
 sed -n '/^\.Sh EXAMPLES/,/^\.Ed/p' "$fixtures/../man/fluidy-svg.conf.5.in" | grep -v '^\.' >example.conf
 cp plain_1.png paper.png

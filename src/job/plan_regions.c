@@ -475,7 +475,8 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     list_style(plan, painted->settings.style);
     painted->style = fl_style_cache_get(plan->styles, &painted->settings, px, error);
     if (!painted->style) {
-        if (r->label && strstr(r->label, painted->settings.style))
+        g_autofree char *word = g_strconcat("style=", painted->settings.style, NULL);
+        if (r->label && strstr(r->label, word))
             g_prefix_error(error, "layer “%s”: ", r->label);
         return false;
     }
