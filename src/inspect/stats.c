@@ -22,10 +22,16 @@ static GString *new_line(int frame_number, const char *region)
     return line;
 }
 
+static void write_line(FILE *out, GString *line)
+{
+    fprintf(out, "%s}\n", line->str);
+    g_string_free(line, TRUE);
+}
+
 static void level_line(FILE *out, const FlPaintedRegion *painted, int frame_number, int level)
 {
     const FlLevelStats *s = &painted->stats.level[level];
-    g_autoptr(GString) line = new_line(frame_number, painted->name);
+    GString *line = new_line(frame_number, painted->name);
     fl_json_number(line, "level", level, true);
     fl_json_number(line, "width", s->width, true);
     fl_json_number(line, "height", s->height, true);
@@ -44,7 +50,7 @@ static void level_line(FILE *out, const FlPaintedRegion *painted, int frame_numb
     fl_json_number(line, "accepted_per_pixel", (double)s->counts.accepted / MAX(s->pixels, 1),
                    true);
     fl_json_number(line, "seconds", s->seconds, true);
-    fprintf(out, "%s}\n", line->str);
+    write_line(out, line);
 }
 
 double fl_peak_mib(void)
@@ -62,18 +68,20 @@ void fl_stats_frame(FlStats *stats, const FlPaintedRegion *const *painted, int n
         return;
     FILE *out = stats->file.stream;
     for (int p = 0; p < n; p++) {
-        if (painted[p]->from == FL_FROM_CACHE)
-            fprintf(out, "{\"frame\":%d,\"region\":\"%s\",\"taken\":true}\n", frame_number,
-                    painted[p]->name);
+        if (painted[p]->from == FL_FROM_CACHE) {
+            GString *taken = new_line(frame_number, painted[p]->name);
+            fl_json_bool(taken, "taken", true);
+            write_line(out, taken);
+        }
         for (int l = painted[p]->stats.n_levels - 1; l >= 0; l--)
             level_line(out, painted[p], frame_number, l);
     }
-    g_autoptr(GString) line = new_line(frame_number, NULL);
+    GString *line = new_line(frame_number, NULL);
     fl_json_number(line, "paint_seconds", paint_s, true);
     fl_json_number(line, "compose_seconds", compose_s, true);
     fl_json_number(line, "write_seconds", write_s, true);
     fl_json_number(line, "peak_mib", fl_peak_mib(), true);
-    fprintf(out, "%s}\n", line->str);
+    write_line(out, line);
 }
 
 char *fl_stats_summary(const FlStats *stats, int n_frames)
