@@ -376,11 +376,11 @@ bool fl_painter_frame(FlPainter *painter, int frame, GError **error)
 /* Before the first picture, or that of the lead-in. An engine that has painted is opened anew. */
 static bool restart(FlPainter *painter, GError **error)
 {
-    const bool painted = !painter->paint || painter->follows || painter->picture != NONE;
+    const bool fresh = painter->paint && !painter->follows && painter->picture == NONE;
     painter->next = 0, painter->picture = NONE;
     painter->follows = false;
     g_clear_pointer(&painter->reuse.state, g_bytes_unref);
-    return !painted || open_engine(painter, error);
+    return fresh || open_engine(painter, error);
 }
 
 int fl_painter_seek(FlPainter *painter, int frame, GError **error)
