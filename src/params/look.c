@@ -106,7 +106,7 @@ static bool unpack_files(Unpacking *unpacking, GError **error)
     return true;
 }
 
-/* Removes folders in which looks were unpacked until a day ago by processes that were killed. */
+/* Removes folders of looks whose unpacking was killed more than a day ago. */
 static void remove_leftovers(const char *parent)
 {
     g_autoptr(GDir) dir = g_dir_open(parent, 0, NULL);

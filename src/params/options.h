@@ -115,8 +115,8 @@ char *fl_option_help(const FlOption *option);
 /** Sets FL_ERROR_USAGE: the value and what the option expects. Returns: false. */
 bool fl_option_reject(const FlOption *option, const char *value, GError **error);
 
-/** Reads a flag, a number, a list or a word into its field. Returns: false if the text is none;
- * the field is then unchanged. */
+/** Reads a flag, a number, a list or a word into its field. Returns: false if the text is not
+ * a value of the option; the field is then unchanged. */
 bool fl_option_read(const FlOption *option, const char *text, void *field);
 
 /** The field of an option in the struct of its scope. */
