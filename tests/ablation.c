@@ -15,6 +15,7 @@
  *   rest        the same where the body rests, in levels of 0 … 255
  * The sheet has a row per variant: three frames, and a row of pixels through time.
  */
+#include "default_params.h"
 #include "scorecard.h"
 #include "synth/synth.h"
 #include <cairo.h>
@@ -131,7 +132,7 @@ static void spread(FieldScore *score, const FlExemplar *e, double *entropy, doub
 static FlParams *params_of(const Variant *variant)
 {
     g_autoptr(GError) error = NULL;
-    FlParams *params = fl_params_new();
+    FlParams *params = default_params();
     for (int k = 0; k < 3 && variant->settings[k]; k++) {
         g_auto(GStrv) pair = g_strsplit(variant->settings[k], "=", 2);
         if (!fl_params_set(params, pair[0], pair[1], &error))
@@ -186,7 +187,7 @@ static void show(const Film *drawing, cairo_surface_t *sheet, int row)
 static void run(const FlStyle *style, int row, cairo_surface_t *sheet)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(FlParams) params = params_of(&variants[row]);
+    g_autofree FlParams *params = params_of(&variants[row]);
     const FlGuideParams how = fl_guide_params(params);
     const FlGuideSource source = {W, H, FRAMES, draw, NULL, NULL};
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);

@@ -21,7 +21,7 @@
  */
 #include "base/rect.h"
 #include "config.h"
-#include "params/params.h"
+#include "default_params.h"
 #include "synth/synth.h"
 #include "threads.h"
 #include <math.h>
@@ -241,7 +241,7 @@ static bool set_params(FlParams *params, GError **error)
 static bool run_case(const Case *c, Figures *f, GError **error)
 {
     g_autofree char *folder = g_build_filename(STYLES, c->style, NULL);
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     if (!set_params(params, error))
         return false;
     g_autoptr(FlStyle) style = fl_style_load(folder, error);

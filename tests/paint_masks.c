@@ -6,7 +6,7 @@
  * theta per pixel). FRAMES beyond the last mask go on backwards and forwards. NAME=VALUE sets a
  * parameter, preset=NAME all of them.
  */
-#include "params/params.h"
+#include "default_params.h"
 #include "synth/synth.h"
 #include <cairo.h>
 #include <glib/gstdio.h>
@@ -136,8 +136,7 @@ int main(int argc, char **argv)
 {
     g_autoptr(GError) error = NULL;
     Masks masks = {0};
-    FlParams *params = g_new0(FlParams, 1);
-    fl_params_defaults(params);
+    FlParams *params = default_params();
     if (argc < 4) {
         fprintf(stderr,
                 "usage: paint_masks STYLE_DIR MASK_DIR OUT_DIR [FRAMES [NAME=VALUE ...]]\n");

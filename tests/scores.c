@@ -11,11 +11,11 @@
  *   rim         luminance 2 to 8 px inside edges that advance minus that of the others, in levels
  *   (of)        the same of the recording
  */
+#include "default_params.h"
 #include "guides/outline.h"
 #include "io/picture_series.h"
 #include "io/png.h"
 #include "job/style_cache.h"
-#include "params/params.h"
 #include "scorecard.h"
 #include "style/adapt.h"
 #include "synth/synth.h"
@@ -114,7 +114,7 @@ static Score score_of_style(const char *folder)
 {
     GError *error = NULL;
     float factor = 1;
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     const FlGuideParams how = fl_guide_params(params);
     g_autoptr(FlStyle) whole =
         fl_style_load_for(folder, 0, 1, 0, true, (FlCaller){0}, &factor, &error);

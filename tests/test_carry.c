@@ -1,4 +1,5 @@
 /* The last field travels with the drawing: where to, how exactly, and what of it. */
+#include "default_params.h"
 #include "guides/displacement.h"
 #include "synth/carry.h"
 #include "synth/patch_cost.h"
@@ -261,7 +262,7 @@ static void parts_that_move_apart_turn_by_themselves(void)
 /* As far as the last frame is trusted at all, and nowhere where nothing was carried to. */
 static void paint_that_was_carried_is_left_at_a_price(void)
 {
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     float trust[2] = {1, 0.5f};
     FlMatch match[2] = {{.frame = 0}, {.frame = 0}};
     const FlNnf carried = {2, 1, match};

@@ -1,4 +1,5 @@
 /* Paint that is wet and dries: how wet it is, how long, and what is shown of the exemplar. */
+#include "default_params.h"
 #include "small_style.h"
 #include "synth/drying.h"
 #include "synth/synth.h"
@@ -95,7 +96,7 @@ static void what_moves_is_damp_all_through(void)
 /* Matches go on in the recording, in their place, or at their depth beside a rim. */
 static void paint_that_dries_goes_on_in_the_recording(void)
 {
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     g_autoptr(FlStyle) style = small_style();
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, NULL);
     g_auto(FlGuides) guides = {0};

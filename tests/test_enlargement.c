@@ -1,4 +1,5 @@
 /* Pictures of twice the size of guides and field. */
+#include "default_params.h"
 #include "guides/half_guides.h"
 #include "small_style.h"
 #include "style/adapt.h"
@@ -19,7 +20,7 @@ static void style_clear(Style *style)
 {
     fl_exemplar_free(style->exemplar);
     fl_style_free(style->full);
-    fl_params_free(style->params);
+    g_free(style->params);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Style, style_clear)
@@ -28,7 +29,7 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Style, style_clear)
 static void style_init(Style *style, int window)
 {
     g_autoptr(GError) error = NULL;
-    *style = (Style){.params = fl_params_new(), .full = small_style()};
+    *style = (Style){.params = default_params(), .full = small_style()};
     style->params->style_window = window;
     style->exemplar = fl_exemplar_new_half(style->full, style->params, &error);
     g_assert_no_error(error);
@@ -145,7 +146,7 @@ static bool is_near_contour(const uint8_t *mask, int x, int y)
 
 static void a_half_has_the_margin_of_the_whole(void)
 {
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     g_autoptr(FlStyle) style = small_style();
     for (int t = 0; t < STYLE_FRAMES; t++)
         for (int p = 0; p < STYLE_W * STYLE_H; p++) // the paint ends before the mask does

@@ -1,4 +1,5 @@
 /* Paint that fits as it was carried is kept: of figures that move, and of shapes that are built. */
+#include "default_params.h"
 #include "small_style.h"
 #include "synth/synth.h"
 
@@ -35,7 +36,7 @@ static bool film_motion(void *data, int frame, const FlOutlinePair *outlines, fl
 static void film_open(Film *film, int n_frames)
 {
     const FlGuideSource source = {SIDE, SIDE, n_frames, film_mask, NULL, film, film_motion};
-    film->params = fl_params_new();
+    film->params = default_params();
     film->params->w_age = 0; // as it was laid
     film->style = small_style();
     film->exemplar = fl_exemplar_new(film->style, film->params, NULL);
@@ -51,7 +52,7 @@ static void film_close(Film *film)
     fl_guide_sequence_free(film->guides);
     fl_exemplar_free(film->exemplar);
     fl_style_free(film->style);
-    fl_params_free(film->params);
+    g_free(film->params);
 }
 
 static void paint_frame(Film *film, int frame, uint8_t *rgb)

@@ -1,3 +1,4 @@
+#include "default_params.h"
 #include "lazy/lazy.h"
 #include "lazy/lazy_state.h"
 #include "lazy/warp.h"
@@ -35,7 +36,7 @@ static FlStyle *still_of_blotches(void)
 static void film_init(Film *film, FlStyle *style, const char *preset, const char *uniform)
 {
     g_autoptr(GError) error = NULL;
-    *film = (Film){.style = style, .params = fl_params_new()};
+    *film = (Film){.style = style, .params = default_params()};
     g_assert_true(fl_params_preset(film->params, preset, &error));
     g_assert_true(fl_params_set(film->params, "rotate", "off", &error));
     g_assert_true(fl_params_set(film->params, "w-uni", uniform, &error));
@@ -56,7 +57,7 @@ static void film_clear(Film *film)
 {
     fl_lazy_free(film->lazy);
     fl_exemplar_free(film->exemplar);
-    fl_params_free(film->params);
+    g_free(film->params);
     fl_style_free(film->style);
     fl_guides_clear(&film->guides);
 }

@@ -2,6 +2,7 @@
 #include "params/options.h"
 
 #include "base/suggest.h"
+#include "default_params.h"
 
 #include <limits.h>
 #include <string.h>
@@ -9,7 +10,7 @@
 static void every_preset_is_within_its_ranges(void)
 {
     for (int i = 0; fl_preset_names[i]; i++) {
-        g_autoptr(FlParams) params = fl_params_new();
+        g_autofree FlParams *params = default_params();
         g_autoptr(GError) error = NULL;
         fl_params_preset(params, fl_preset_names[i], &error);
         g_assert_no_error(error);
@@ -18,7 +19,7 @@ static void every_preset_is_within_its_ranges(void)
 
 static void the_published_values_are_those_of_the_papers(void)
 {
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     g_assert_true(fl_params_preset(params, "fluidymation", NULL)); // [F21 table 1]
     g_assert_cmpfloat(params->border, ==, 30);
     g_assert_cmpfloat(params->w_bound, ==, 4);

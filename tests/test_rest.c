@@ -1,4 +1,5 @@
 /* Regions at rest, and parts of a region that rest while others move. */
+#include "default_params.h"
 #include "small_style.h"
 #include "synth/rest.h"
 #include "synth/synth.h"
@@ -57,7 +58,7 @@ static FlSynth *synth_of(const Film *film)
 static Film *film_new(FlGuideSource source)
 {
     Film *film = g_new0(Film, 1);
-    film->params = fl_params_new();
+    film->params = default_params();
     film->style = small_style();
     film->exemplar = fl_exemplar_new(film->style, film->params, NULL);
     const FlGuideParams how = fl_guide_params(film->params);
@@ -75,7 +76,7 @@ static void film_free(Film *film)
     fl_guide_sequence_free(film->guides);
     fl_exemplar_free(film->exemplar);
     fl_style_free(film->style);
-    fl_params_free(film->params);
+    g_free(film->params);
     g_free(film);
 }
 

@@ -6,6 +6,7 @@
  * terms that make pixels depend on each other (uniformity and coherence): their optimum is not a
  * pixel's own.
  */
+#include "default_params.h"
 #include "small_style.h"
 #include "synth/synth_levels.h"
 #include "synth/vote.h"
@@ -27,7 +28,7 @@ typedef struct Case {
 static void set_up(Case *c, bool rotate)
 {
     g_autoptr(GError) error = NULL;
-    *c = (Case){.params = fl_params_new(), .style = small_style()};
+    *c = (Case){.params = default_params(), .style = small_style()};
     c->params->w_uni = c->params->w_coh = 0;
     c->params->rotate = rotate;
     c->exemplar = fl_exemplar_new(c->style, c->params, &error);
@@ -65,7 +66,7 @@ static void tear_down(Case *c)
     fl_target_clear(&c->target);
     fl_exemplar_free(c->exemplar);
     fl_style_free(c->style);
-    fl_params_free(c->params);
+    g_free(c->params);
 }
 
 /* Blends the colours in, searches, and returns the mean cost of the field. */

@@ -1,4 +1,5 @@
 /* The temporal shift: a target that moves against its exemplar plays it backwards. */
+#include "default_params.h"
 #include "small_style.h"
 #include "synth/shift.h"
 #include "synth/synth.h"
@@ -7,7 +8,7 @@
 
 static FlExemplar *exemplar_new(void)
 {
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     g_autoptr(FlStyle) style = small_style();
     FlExemplar *exemplar = fl_exemplar_new(style, params, NULL);
     g_assert_nonnull(exemplar);

@@ -1,3 +1,4 @@
+#include "default_params.h"
 #include "small_style.h"
 #include "synth/shift.h"
 #include "synth/synth.h"
@@ -8,7 +9,7 @@
 static uint8_t *painted(int threads)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     g_autoptr(FlStyle) style = small_style();
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);
     g_assert_no_error(error);
@@ -45,7 +46,7 @@ static void the_inside_is_painted_and_the_outside_is_paper(void)
 static void a_coherent_field_votes_back_the_exemplar(void)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     g_autoptr(FlStyle) style = small_style();
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);
     g_auto(FlNnf) nnf = {0};
@@ -68,7 +69,7 @@ static void a_coherent_field_votes_back_the_exemplar(void)
 static void upscaling_keeps_a_rotated_field_coherent(void)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     g_autoptr(FlStyle) style = small_style();
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);
     g_auto(FlNnf) coarse = {0}, fine = {0};
@@ -88,7 +89,7 @@ static void upscaling_keeps_a_rotated_field_coherent(void)
 
 static void a_region_at_rest_has_a_view_though_its_picture_had_none(void)
 {
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     g_autoptr(FlStyle) style = small_style();
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, NULL);
     g_autoptr(FlSynth) synth = fl_synth_new(exemplar, params, (FlSynthSize){48, 48, 48, 48}, 7);
@@ -112,7 +113,7 @@ static void a_region_at_rest_has_a_view_though_its_picture_had_none(void)
 /* The margin of an exemplar whose masks reach bare_px beyond its paint. */
 static float margin_with(double bare_px, const char *preset)
 {
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     g_autoptr(FlStyle) style = small_style();
     g_assert_true(fl_params_preset(params, preset, NULL));
     for (int p = 0; p < STYLE_W * STYLE_H * STYLE_FRAMES; p++) {
@@ -137,7 +138,7 @@ static void depth_counts_from_where_paint_begins(void)
 
 static void the_middle_of_a_large_shape_is_trusted_by_the_carry(void)
 {
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     g_autoptr(FlStyle) style = small_style();
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, NULL);
     const FlMatch middle = {16 * STYLE_W / 2, 16 * STYLE_H / 2, .frame = STYLE_FRAMES - 1};

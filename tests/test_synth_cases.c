@@ -1,4 +1,5 @@
 /* Regions and styles that are odd, small or empty: what is painted is defined, and is paint. */
+#include "default_params.h"
 #include "small_style.h"
 #include "synth/synth.h"
 
@@ -27,7 +28,7 @@ static uint8_t tone_at(const uint8_t *rgb, const Target *t, int x, int y)
 static void paint(const FlStyle *style, Target *t)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);
     g_assert_no_error(error);
     const FlGuideParams how = fl_guide_params(params);
@@ -151,7 +152,7 @@ static void a_style_that_is_all_border_is_enough(void)
 static void a_style_without_paint_is_an_error(void)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     g_autoptr(FlStyle) style = small_style();
     memset(style->mask, 0, STYLE_W * STYLE_H * STYLE_FRAMES);
     g_assert_null(fl_exemplar_new(style, params, &error));

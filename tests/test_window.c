@@ -1,3 +1,4 @@
+#include "default_params.h"
 #include "small_style.h"
 #include "synth/synth.h"
 #include "threads.h"
@@ -29,7 +30,7 @@ static FlStyle *long_style(int bare)
 static FlExemplar *exemplar_with(const FlStyle *style, int window)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     params->style_window = window;
     FlExemplar *exemplar = fl_exemplar_new(style, params, &error);
     g_assert_no_error(error);
@@ -96,7 +97,7 @@ static void a_window_keeps_to_frames_with_paint(void)
 static uint8_t *painted(int threads)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     g_autoptr(FlStyle) style = long_style(0);
     g_autoptr(FlExemplar) exemplar = exemplar_with(style, WINDOW);
     const FlGuideParams how = fl_guide_params(params);

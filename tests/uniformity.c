@@ -13,6 +13,7 @@
  *   entropy   of the use of exemplar pixels, as a share of an even use
  */
 #include "base/rng.h"
+#include "default_params.h"
 #include "synth/patchmatch.h"
 #include <math.h>
 #include <stdio.h>
@@ -276,7 +277,7 @@ static bool compare(const FlStyle *style, FlParams *params, GError **error)
 int main(int argc, char **argv)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(FlParams) params = fl_params_new();
+    g_autofree FlParams *params = default_params();
     params->w_coh = 0;
     g_autoptr(FlStyle) style = fl_style_load(argc > 1 ? argv[1] : "", &error);
     if (style && compare(style, params, &error))

@@ -26,10 +26,6 @@ typedef struct FlParams {
 #undef FL_PARAM
 } FlParams;
 
-/** Returns: the defaults, to be freed with fl_params_free(). */
-FlParams *fl_params_new(void);
-void fl_params_free(FlParams *params); // NULL is fine
-
 void fl_params_defaults(FlParams *params);
 
 /** Sets all parameters to a preset by its name. FL_ERROR_USAGE. */
@@ -66,7 +62,5 @@ extern const char *const fl_preset_names[];
 
 /** Returns: the name of the preset of an older word; any other word itself. */
 const char *fl_preset_word(const char *word);
-
-G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlParams, fl_params_free)
 
 #endif

@@ -88,15 +88,3 @@ bool fl_params_preset(FlParams *params, const char *word, GError **error)
     return fl_fail(error, FL_ERROR_USAGE, "unknown preset “%s”; the presets are %s%s", preset,
                    presets, hint);
 }
-
-FlParams *fl_params_new(void)
-{
-    FlParams *params = g_new0(FlParams, 1);
-    fl_params_defaults(params);
-    return params;
-}
-
-void fl_params_free(FlParams *params)
-{
-    g_free(params);
-}
