@@ -204,6 +204,8 @@ static void values_become_those_of_svg_1(void)
         {"style='transform:translate(50%, 10px)'", "transform", "matrix(1, 0, 0, 1, 50, 10)"},
         {"style='rotate:90deg;transform-origin:center'", "transform", "matrix(0, 1, -1, 0, 100, 0)"},
         {"style='scale:2;translate:3px 4px'", "transform", "matrix(2, 0, 0, 2, 3, 4)"},
+        {"style='transform:translate(0, 0) rotate(0) scale(50%)'", "transform",
+         "matrix(0.5, 0, 0, 0.5, 0, 0)"},
         {"style='transform:rotateX(60deg)'", "transform", "matrix(1, 0, 0, 0.5, 0, 0)"},
         {"style='transform:rotateY(90deg) rotateX(-90deg)'", "transform", "matrix(0, 0, -1, 0, 0, 0)"},
         {"style='transform:perspective(4px) translateZ(2px)'", "transform", "matrix(2, 0, 0, 2, 0, 0)"},
@@ -462,7 +464,12 @@ static void values_that_librsvg_leaves_out_are_told(void)
         {"<path id='a' clip-path='url(#c)'/><clipPath id='c'/>", NULL},
         {"<text id='a' style='text-transform:uppercase'>a</text>", "text-transform"},
         {"<text id='a' style='white-space:pre;font-palette:dark'>a</text>", NULL},
-        {"<g id='a' style='display:table-row-group'/>", NULL}};
+        {"<g id='a' style='display:table-row-group'/>", NULL},
+        {"<g id='a' style='transform:rotate(30)'/>", "transform"},
+        {"<g id='a' style='transform:rotate(30deg, 3px, 2px)'/>", "transform"},
+        {"<g id='a' style='transform:matrix(1, 0, 0, 1, 5px, 1px)'/>", "transform"},
+        {"<g id='a' style='transform:translate(3, 2)'/>", "transform"},
+        {"<g id='a' style='transform:scale(2px)'/>", "transform"}};
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
         g_autoptr(FlWarnings) warnings = fl_warnings_new();
         g_test_message("%s", cases[i][0]);

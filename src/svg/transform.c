@@ -128,18 +128,35 @@ static bool map_of_space(const char *name, const double *v, int n, Space *space)
 #undef IS
 }
 
+/** Returns: true if the i-th argument of a function of CSS is an angle, a length or a plain number,
+ * as the function wants; 0 needs no unit, and results of calc() and the like are not checked. */
+static bool has_right_unit(const char *name, int i, const char *text, double value)
+{
+    const char last = text[strlen(text) - 1];
+    const bool plain = g_ascii_isdigit(last) || last == '.', turns = strchr("rs", *name);
+    const bool angle = g_str_has_suffix(text, "deg") || g_str_has_suffix(text, "rad") ||
+                       g_str_has_suffix(text, "turn");
+    if (last == ')' || (plain && value == 0))
+        return true;
+    if (g_str_has_prefix(name, "scale"))
+        return plain || last == '%';
+    if (*name == 'm' || (strcmp(name, "rotate3d") == 0 && i < 3))
+        return plain;
+    return !plain && angle == turns;
+}
+
 /** Reads the arguments of a function of CSS: their number, -1 if they are wrong. */
 static int read_arguments(const char *name, const char *text, const FlCssUnits *units, double *v)
 {
     g_auto(GStrv) part = fl_css_split(text, ',');
-    const bool length = g_ascii_strncasecmp(name, "translate", 9) == 0;
-    const bool vertical = g_ascii_tolower(name[strlen(name) - 1]) == 'y';
+    const bool length = g_str_has_prefix(name, "translate"), vertical = g_str_has_suffix(name, "y");
     const int n = (int)g_strv_length(part);
     for (int i = 0; i < n && n <= MOST_ARGUMENTS; i++) {
         const double whole = !length ? 1 : i == 1 || vertical ? units->height : units->width;
         if (strcmp(part[i], "none") == 0) // perspective(none)
             v[i] = 0;
-        else if (!fl_css_number(part[i], units, whole, &v[i]))
+        else if (!fl_css_number(part[i], units, whole, &v[i]) ||
+                 !has_right_unit(name, i, part[i], v[i]))
             return -1;
     }
     return n <= MOST_ARGUMENTS ? n : -1;
@@ -162,7 +179,7 @@ static bool read_function(const char *name, const char *arguments, const FlCssUn
     FlAffine plane;
     double v[MOST_ARGUMENTS];
     g_autofree char *lower = g_ascii_strdown(name, -1);
-    const int n = units ? read_arguments(name, arguments, units, v) : read_numbers(arguments, v);
+    const int n = units ? read_arguments(lower, arguments, units, v) : read_numbers(arguments, v);
     if (n >= 0 && units && map_of_space(lower, v, n, space))
         return true;
     const bool good = n >= 0 && map_of(name, v, n, &plane);
