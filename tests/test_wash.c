@@ -592,30 +592,6 @@ static void hairs_of_a_dry_brush_draw_streaks(void)
     g_assert_cmpfloat(wet, <, .01f);
 }
 
-/* The least tone of a dry page of a side, whose brush skips islands of paper if it is large. */
-static float least_tone(int side)
-{
-    static const FlWashStyle dry = {.wash = 1, .passes = 1};
-    float least = 0;
-    for (int k = 0; k < 8; k++) {
-        g_autofree char *page = g_strdup_printf("<path fill='#%06x' d='M10 10h%dv%dh-%dz'/>",
-                                                0x203050 + k, side, side, side);
-        g_autofree Tones *tones = lay_still(page, &dry, 0);
-        for (int i = 0; i < W * H; i++)
-            if (tones->tone[i] > BARE)
-                least = MIN(least, tones->tone[i]);
-    }
-    return least;
-}
-
-/* In small shapes they would look like scratches. */
-static void large_shapes_alone_have_islands(void)
-{
-    g_test_message("down to %.2f, in a small shape %.2f", least_tone(280), least_tone(120));
-    g_assert_cmpfloat(least_tone(280), <, -1);
-    g_assert_cmpfloat(least_tone(120), >, -.7);
-}
-
 /* Parts of a fill that move apart: no line where one's wash passes into the other's. */
 static void parts_that_move_apart_are_mixed(void)
 {
@@ -922,7 +898,6 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/passes-are-soft-and-slopes-ragged", passes_are_soft_and_slopes_ragged);
     g_test_add_func("/wash/dry-passes-have-ragged-edges", dry_passes_have_ragged_edges);
     g_test_add_func("/wash/hairs-of-a-dry-brush-draw-streaks", hairs_of_a_dry_brush_draw_streaks);
-    g_test_add_func("/wash/large-shapes-alone-have-islands", large_shapes_alone_have_islands);
     g_test_add_func("/wash/parts-that-move-apart-are-mixed", parts_that_move_apart_are_mixed);
     g_test_add_func("/wash/dots-and-lines-have-none", dots_and_lines_have_none);
     g_test_add_func("/wash/a-calm-wash-keeps-some-of-the-rim", a_calm_wash_keeps_some_of_the_rim);

@@ -29,7 +29,6 @@ typedef struct FlWash {
     uint64_t key;                   // of the film's seed and the fill
     float brush_px;                 // width of a pass, px of the page
     float along[2];                 // vector along the passes
-    float islands;                  // share of the islands of paper that a dry brush skips
     FlRect box;                     // px of the frame
     int step;                       // px of the frame from point to point
     int width, height;              // points; the first is at the corner of the box

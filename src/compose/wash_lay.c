@@ -111,8 +111,7 @@ static inline float side_at(float away, float strength, float ragged)
     return fl_smooth(.5f + past / lost_px) - .5f;
 }
 
-/* The load of the brush, mostly within -1..1, with streaks of its hairs where it is dry,
- * and islands of paper that it skipped where it held little. */
+/* The load of the brush, mostly within -1..1, with streaks of its hairs where it is dry. */
 static inline float load_at(const Brush *brush, const Slow slow, float ragged)
 {
     const FlWash *wash = brush->wash;
@@ -123,9 +122,7 @@ static inline float load_at(const Brush *brush, const Slow slow, float ragged)
     const float *load = brush->load + ((int)whole & (LOADS - 1));
     const float along = wash->along[0] * slow[FL_WASH_X] + wash->along[1] * slow[FL_WASH_Y];
     const float hairs = ragged_at(brush, slow[FL_WASH_PASS] * wash->brush_px, .08f * along);
-    const float held = load[0] + (load[1] - load[0]) * next, lines = slow[FL_WASH_LINES];
-    const float skipped = fl_smooth(-1.5f * held - .4f) * fl_smooth(4 * (hairs + ragged) - 4.4f);
-    return lines * (held + dry * (.6f * hairs - 5 * wash->islands * lines * lines * skipped));
+    return slow[FL_WASH_LINES] * (load[0] + (load[1] - load[0]) * next + .6f * dry * hairs);
 }
 
 /* The ln of the factor on the amount by a wash of strength 1, and the balance of the pigments, at a

@@ -211,7 +211,6 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
     field.size = size_of(input, field.wash->painted->region);
     field.drops = drops_of(&field);
     field.wash->brush_px = fl_clamp(.5f * field.size, 34, 85);
-    field.wash->islands = fl_smooth(.5f * field.size / field.wash->brush_px - 1); // else scratches
     find_along(&field);
     const bool made = fl_field_alloc(&field, error) && read_maps(&field, error);
     if (made) {
