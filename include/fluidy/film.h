@@ -14,9 +14,8 @@ G_BEGIN_DECLS
  *
  * Another "tint" or "paper" only composes the frames again; another "style" of a region only paints
  * that region again; no option of the paint reads the drawing again. Painted pictures stay in
- * memory, as many as four films have, and up to 512 MiB, or an eighth of the limit ‘memory’, of
- * frames and of drafts each, so that a choice that is taken back shows the earlier pictures at
- * once.
+ * memory, so that a choice that is taken back shows the earlier ones at once: of frames and of
+ * drafts as many as four films have, each up to 512 MiB or an eighth of the limit ‘memory’.
  *
  * Threads: one film belongs to one thread at a time; several threads may have a film each. While
  * the process has a single thread, drawings are read and drawn in child processes, which are
@@ -107,7 +106,8 @@ typedef struct FlFilmFrame {
 /**
  * Paints and composes a frame: the bytes that fl_render() writes with the same options, whatever
  * was asked for before. Frames may come in any order; one that follows from pictures that are not
- * kept has these painted first.
+ * kept has these painted first, and where fronts or stains mark the paper, earlier frames are
+ * composed first.
  *
  * frame: 0 to n_frames - 1. Returns: valid until the next call; NULL with an error of FL_ERROR,
  * after which the film can still be used.

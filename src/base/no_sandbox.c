@@ -1,4 +1,4 @@
-/* Where a build or a system has no sandbox; sandbox.c is the other one. */
+/* For builds and systems without a sandbox; sandbox.c is for all others. */
 #include "base/sandbox.h"
 
 FlConfinement *fl_confinement_new(const char *const *paths, const char *program, int64_t mib,

@@ -238,7 +238,7 @@ static const int allowed[] = {
     CALL(uname),
 };
 
-/* What it takes to become another program. */
+/* The calls that start another program. */
 static const int starting[] = {CALL(execve), CALL(arch_prctl), CALL(dup2), CALL(dup3)};
 
 /** Allows a call if the bits `mask` of argument `nth` are `value`. */

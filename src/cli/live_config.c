@@ -74,7 +74,7 @@ static void set(char **text, const char *section, const char *key, const char *v
 
 /* ---- paths ---------------------------------------------------------------------------------- */
 
-/* The value as it reads in any folder. */
+/* The value; a path in it is made absolute. */
 static char *absolute(const FlOption *option, const char *value)
 {
     const bool names_file = strchr(value, '/') || g_file_test(value, G_FILE_TEST_EXISTS);

@@ -153,7 +153,7 @@ static bool take_back(Live *live)
     return dropped || chosen;
 }
 
-/* A sample that fails is one that its page no longer waits for. */
+/* The page of a sample that fails no longer waits for it. */
 static void on_failed(Live *live, const FlLiveJob *job)
 {
     g_autofree char *reverted = object_of("reverted", job->error->message);
@@ -317,7 +317,7 @@ static void answer_line(SoupServerMessage *message, guint status, const char *wo
     answer(message, status, "text/plain; charset=utf-8", line, strlen(line));
 }
 
-/* They are painted in place of the others; see take_back(). */
+/* Dropped files are painted in place of the others; see take_back(). */
 static void take_drop(Live *live, SoupServerMessage *message)
 {
     g_autoptr(GError) error = NULL;
@@ -401,7 +401,7 @@ static void on_request(SoupServer *server, SoupServerMessage *message, const cha
         answer_line(message, SOUP_STATUS_NOT_FOUND, "not found");
 }
 
-/* A page that looks: it gets its controls, the state and the facts of the film. */
+/* A page that has connected gets its controls, the state and the facts of the film. */
 static void on_page(SoupServer *server, SoupServerMessage *message, const char *path,
                     SoupWebsocketConnection *page, void *data)
 {

@@ -309,7 +309,7 @@ static char *slurm_command(const Farm *farm, Step step)
     return g_strdup_printf("%s \"$what\" %s", before, after);
 }
 
-/* What sbatch is told of a step besides: that its commands are an array, and which step is first.
+/* The other options of sbatch for a step: its commands are an array, and another step comes first.
  */
 static char *slurm_options(const Farm *farm, Step step)
 {

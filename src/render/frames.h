@@ -53,8 +53,8 @@ bool fl_frames_prepare(FlFrames *frames, GError **error);
  * loop. */
 bool fl_frames_lead_in(FlFrames *frames, GError **error);
 
-/** Makes it possible to make a frame out of turn: paints what it follows from and is not kept. The
- * plan has a store. */
+/** Makes it possible to make a frame out of turn: paints the pictures before it that are not kept,
+ * and composes all frames before it if the paper has marks. */
 bool fl_frames_seek(FlFrames *frames, int frame, GError **error);
 
 /** The same at once, as if the film began with the frame: what is shown differs at first. */
