@@ -628,11 +628,7 @@ bool fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
     visit(&c, root,
           &(Style){
               .variables = sheet->initial, .own = sheet->own, .units = units, .colour = "black"});
-    GHashTableIter iter;
-    gpointer use;
-    g_hash_table_iter_init(&iter, copies);
-    while (g_hash_table_iter_next(&iter, &use, NULL)) // all selectors have been matched
-        fl_use_make_group(use);
+    fl_uses_make_groups(copies); // now that all selectors have been matched
     fl_css_keep_strokes(root, &units);
     if (c.work.steps > FL_SELECTOR_STEPS)
         fl_warnings_add(warnings, path, number, NULL,

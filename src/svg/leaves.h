@@ -23,7 +23,7 @@ typedef struct FlLeaf {
     char *tree;    // child indices from the root, "0/3/1"
     int unit;      // index of the group that may be drawn as one, with this leaf; -1: no group
     bool text;     // has text, whose shape depends on the scale
-    bool all;      // the whole document, drawn from its text before fl_document_normalise()
+    bool all;      // the whole document, drawn as one
     bool whole; // has markers, text or images, or is in `whole`: fill and stroke are not separated
 } FlLeaf;
 

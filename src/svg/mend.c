@@ -65,7 +65,7 @@ static void mend_shadow(xmlNode *node, int number)
     fl_set_attribute(xmlNewChild(node, node->ns, (const xmlChar *)"feMergeNode", NULL), "in", in);
 }
 
-/* ---- blurs of what is turned --------------------------------------------------------------- */
+/* ---- blurs of turned shapes ------------------------------------------------------------------ */
 
 /** The element of that kind that a property of a node refers to; NULL without one. */
 static xmlNode *referred_by(const xmlNode *node, const char *property, const char *kind,

@@ -38,7 +38,7 @@ RsvgHandle *fl_svg_make_handle(const FlSvg *svg, const char *text, size_t bytes,
  * FlLeaves.mask. NULL with FL_ERROR_INPUT. */
 RsvgHandle *fl_svg_handle(FlSvg *svg, FlPart part, bool bare, GError **error);
 
-/** Likewise the handle whose layers are the groups of that depth, see fl_group_masks_flood(). */
+/** Likewise the handle whose layers are the groups of that depth, each the coverage of its mask. */
 RsvgHandle *fl_svg_mask_handle(FlSvg *svg, int depth, GError **error);
 
 /** What its elements inherit on a page of that size; svg->ids are there then. It belongs to svg. */

@@ -39,8 +39,8 @@ static double bytes_of(const xmlNode *text)
     return bytes;
 }
 
-/** Points an element and those in it to where rules are matched, and puts their ids aside, which
- * stay unique. Counts them. */
+/** Points the elements of a copy to those that were written, puts their ids aside, which stay
+ * unique, and counts them. */
 static void link_copy(Uses *uses, xmlNode *copy, const xmlNode *from)
 {
     g_autoptr(xmlChar) id = fl_attribute(copy, "id");
@@ -60,7 +60,8 @@ static void link_copy(Uses *uses, xmlNode *copy, const xmlNode *from)
     }
 }
 
-/** The element that a <use> shows and is to be copied; NULL: it has none here, or shows itself. */
+/** The element that a <use> shows; NULL: it is in another file, missing, hidden, or shows itself.
+ */
 static const xmlNode *target_of(const Uses *uses, const xmlNode *use, const Shown *around,
                                 int depth)
 {
@@ -167,10 +168,15 @@ void fl_use_place(xmlNode *use, const FlCssUnits *units)
         fl_set_attribute(use, "transform", text);
 }
 
-void fl_use_make_group(xmlNode *use)
+void fl_uses_make_groups(GHashTable *copies)
 {
-    FL_EACH_ELEMENT (child, use)
-        if (xmlNextElementSibling(child))
-            fl_declare(child, "display:none");
-    xmlNodeSetName(use, (const xmlChar *)"g");
+    GHashTableIter iter;
+    gpointer use, copy;
+    g_hash_table_iter_init(&iter, copies);
+    while (g_hash_table_iter_next(&iter, &use, &copy)) {
+        FL_EACH_ELEMENT (child, use)
+            if (child != copy)
+                fl_declare(child, "display:none");
+        xmlNodeSetName(use, (const xmlChar *)"g");
+    }
 }

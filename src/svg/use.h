@@ -13,9 +13,9 @@ bool fl_use_is_drawn(const xmlNode *use);
 
 /**
  * Gives each <use> a copy of what it shows as its last child, so that the copy inherits from the
- * <use>, variables included. The _private of a copied element is the one that was written, at which
- * rules are matched. A <use> that shows itself gets no copy, nor do those in clip paths, which have
- * no groups: librsvg resolves them.
+ * <use>, variables included. Elements of a copy have in _private the element that was written, for
+ * which selectors are matched. A <use> that shows itself gets no copy, and none in a clip path
+ * does, which may have no groups: librsvg resolves those.
  *
  * Returns: each <use> with its copy; NULL with FL_ERROR_LIMIT if the copies are too many or too
  * large.
@@ -28,7 +28,7 @@ void fl_use_give_size(xmlNode *use, xmlNode *copy);
 /** Moves what a <use> shows by its x and y, which come after its transform. */
 void fl_use_place(xmlNode *use, const FlCssUnits *units);
 
-/** Makes a <use> with a copy a group that shows only that. */
-void fl_use_make_group(xmlNode *use);
+/** Makes each <use> with a copy a group that shows only the copy. */
+void fl_uses_make_groups(GHashTable *copies);
 
 #endif
