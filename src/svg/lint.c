@@ -219,7 +219,7 @@ static void lint_node(const Lint *lint, xmlNode *node)
     check_text(lint, node);
     check_values(lint, node);
     if (node->ns && strcmp((const char *)node->name, "include") == 0)
-        warn(lint, node, "what <include> brings in is drawn without the styles of the drawing");
+        warn(lint, node, "the file of <include> is drawn without the styles of the drawing");
     if (fl_is(node, "foreignObject"))
         check_foreign(lint, node);
     check_references(lint, node);

@@ -2,7 +2,6 @@
 
 #include "svg/normalise.h"
 #include "worker/probe.h"
-#include <stdlib.h>
 #include <string.h>
 
 #define MOST_WHOLE 8 // groups of a frame that become one leaf, each after another probe
@@ -113,9 +112,10 @@ static void warn_of_whole(FlWarnings *warnings, const char *file, int number, co
 {
     const bool made = g_str_has_prefix(group, FL_GROUP_ID);
     const bool shape = g_str_has_prefix(group, FL_SHAPE_AT);
-    const int nth = made ? atoi(group + strlen(FL_GROUP_ID)) + 1 : 0;
-    g_autofree char *which = made ? g_strdup_printf("no. %d of the groups without an id ", nth)
-                                  : g_strdup(shape ? "a shape without an id " : "");
+    const guint64 i = made ? g_ascii_strtoull(group + strlen(FL_GROUP_ID), NULL, 10) : 0;
+    g_autofree char *which =
+        made ? g_strdup_printf("no. %" G_GUINT64_FORMAT " of the groups without an id ", i + 1)
+             : g_strdup(shape ? "a shape without an id " : "");
     const bool all = strcmp(group, FL_WHOLE_ALL) == 0;
     fl_warnings_add(warnings, file, number, made || all || shape ? NULL : group,
                     "%slooks different when it is drawn shape by shape: drawn as one in "
