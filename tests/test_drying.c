@@ -93,6 +93,14 @@ static void what_moves_is_damp_all_through(void)
     g_assert_cmpint(tone, ==, FL_TONE_ONE); // not paler for it
 }
 
+static void what_comes_into_view_is_no_fresher_than_what_was_in_view(void)
+{
+    int tone;
+    const int in_view = wet_after(20, 0, SIDE, 0, FL_DRYING_FRAMES, &tone);
+    g_assert_cmpint(wet_after(20, 0, SIDE, -1, 1, &tone), ==, in_view);
+    g_assert_cmpint(tone, ==, FL_TONE_ONE);
+}
+
 /* Matches go on in the recording, in their place, or at their depth beside a rim. */
 static void paint_that_dries_goes_on_in_the_recording(void)
 {
@@ -125,6 +133,7 @@ int main(int argc, char **argv)
     TEST(an_edge_over_other_paint_is_as_at_rest);
     TEST(new_paint_is_fresh_and_at_rest_is_dry_in_time);
     TEST(what_moves_is_damp_all_through);
+    TEST(what_comes_into_view_is_no_fresher_than_what_was_in_view);
     TEST(paint_that_dries_goes_on_in_the_recording);
 #undef TEST
     return g_test_run();

@@ -108,6 +108,28 @@ static uint8_t tone_of(const FlDrying *drying, const Place *place, int wet, floa
     return (uint8_t)(FL_TONE_ONE * tone + 0.5f);
 }
 
+/* True if a place of the body was beyond a side of the page, or so near to it that its patch was
+ * cut off: paint that is laid there now is not new. */
+static bool came_into_view(const FlGuides *guides, size_t p, int x, int y)
+{
+    if (!guides->has_motion || guides->motion[2 * p] == FL_MOTION_UNKNOWN)
+        return false;
+    const float was_x = (float)x - (float)guides->motion[2 * p] / FL_MOTION_ONE;
+    const float was_y = (float)y - (float)guides->motion[2 * p + 1] / FL_MOTION_ONE;
+    const float margin = FL_PATCH_RADIUS + 1; // paint is carried from a pixel beside that place
+    return MIN(was_x, was_y) < margin || was_x > (float)guides->width - 1 - margin ||
+           was_y > (float)guides->height - 1 - margin;
+}
+
+static int wetness(const FlDrying *drying, const Place *place, const FlCarried *carried, size_t q,
+                   size_t p, int x, int y)
+{
+    const bool new = carried && carried->nnf.match[q].frame == FL_NO_MATCH;
+    if (!carried || (new &&came_into_view(drying->guides, p, x, y)))
+        return (int)(tends_to(place) * FL_WET + 0.5f);
+    return new ? NEW : next_wetness(place, carried->wet[q]);
+}
+
 bool fl_drying_step(const FlDrying *drying, FlRect rect, const FlCarried *carried, uint8_t *wet,
                     uint8_t *tone)
 {
@@ -122,10 +144,7 @@ bool fl_drying_step(const FlDrying *drying, FlRect rect, const FlCarried *carrie
             if (guides->mask[p] < FL_INSIDE)
                 continue;
             const Place place = place_of(drying, p, x, y, !carried);
-            const bool new = carried && carried->nnf.match[q].frame == FL_NO_MATCH;
-            const int now = !carried ? (int)(tends_to(&place) * FL_WET + 0.5f)
-                            : new    ? NEW
-                                     : next_wetness(&place, carried->wet[q]);
+            const int now = wetness(drying, &place, carried, q, p, x, y);
             wet[(size_t)y * (size_t)drying->width + (size_t)x] = (uint8_t)now;
             tone[q] = tone_of(drying, &place, now, guides->distance[p]);
             dries = dries || now != fl_wet_at_rest(guides, p, drying->unit_px);

@@ -24,8 +24,9 @@ int fl_wet_at_rest(const FlGuides *guides, size_t pixel, float unit_px);
  *
  * Inside, paint is wetter the faster it moves; near the contour it is fresh where that advances and
  * dry where it recedes. It gets wet within two frames, dries within 36, and starts fresh where it
- * is new. wet: of the frame, 0 elsewhere. tone: of rect, the factor of its density, FL_TONE_ONE is
- * 1: fresh paint is pale, and pigment gathers where the contour recedes.
+ * is new; paint of a body that comes into view at a side of the page is not new. wet: of the frame,
+ * 0 elsewhere. tone: of rect, the factor of its density, FL_TONE_ONE is 1: fresh paint is pale, and
+ * pigment gathers where the contour recedes.
  *
  * Returns: true if the wetness of a pixel differs from its wetness at rest.
  */
