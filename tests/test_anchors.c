@@ -137,6 +137,20 @@ static void a_shape_that_is_built_holds_its_anchor(void)
     assert_film(folder, 0, 0, 0);
 }
 
+/* A triangle that becomes a square node by node, within the same box. */
+static void an_outline_that_is_drawn_on_holds_its_anchor(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < N; t++) {
+        g_autoptr(GString) path = g_string_new("<path fill=\"red\" d=\"M10,10L90,10L90,90");
+        for (int k = 1; k <= t; k++)
+            g_string_append_printf(path, "L%d,90", 90 - 10 * k);
+        g_string_append(path, "z\"/>");
+        add_frame(folder, t, path->str);
+    }
+    assert_film(folder, 0, 0, 0);
+}
+
 static void what_rests_has_an_anchor_that_rests(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -204,6 +218,8 @@ int main(int argc, char **argv)
     TEST("other-nodes-are-no-turn", other_nodes_are_no_turn);
     TEST("a-leaf-that-goes-takes-nothing-along", a_leaf_that_goes_takes_nothing_along);
     TEST("a-shape-that-is-built-holds-its-anchor", a_shape_that_is_built_holds_its_anchor);
+    TEST("an-outline-that-is-drawn-on-holds-its-anchor",
+         an_outline_that_is_drawn_on_holds_its_anchor);
     TEST("many-shapes-are-followed-where-one-comes-in",
          many_shapes_are_followed_where_one_comes_in);
     TEST("a-long-shape-has-an-axis", a_long_shape_has_an_axis);

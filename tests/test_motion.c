@@ -643,6 +643,14 @@ static void band_that_gets_longer(GString *out, int t)
     g_string_append(out, "z'/>");
 }
 
+/* Its nodes come one by one; the side that closes it hides nearly as much as they add. */
+static void fill_that_is_drawn_on(GString *out, int t)
+{
+    static const char *const more[] = {"", "L30 150", "L30 150L26 100"};
+    g_string_append_printf(out, "<path fill='" RED "' d='M40 20L160 20L160 180L40 180%sz'/>",
+                           more[t]);
+}
+
 static void fill_that_a_clip_opens(GString *out, int t)
 {
     g_string_append_printf(out,
@@ -655,9 +663,9 @@ static void fill_that_a_clip_opens(GString *out, int t)
 static void what_is_laid_stays(void)
 {
     static float motion[2 * SIZE * SIZE];
-    static Draw *const draws[] = {line_that_draws_itself, line_that_gets_longer,
-                                  line_with_a_dash,       strokes_that_come,
-                                  band_that_gets_longer,  fill_that_a_clip_opens};
+    static Draw *const draws[] = {
+        line_that_draws_itself, line_that_gets_longer, line_with_a_dash,      strokes_that_come,
+        band_that_gets_longer,  fill_that_is_drawn_on, fill_that_a_clip_opens};
     for (size_t i = 0; i < G_N_ELEMENTS(draws); i++) {
         g_auto(Sequence) s = sequence_of(draws[i], 3);
         for (int t = 1; t < 3; t++) {

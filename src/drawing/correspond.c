@@ -225,11 +225,12 @@ static bool grows(const Pair *p, bool same)
         return false;
     g_autoptr(GArray) before = flattened(p->before, p->a), now = flattened(p->now, p->b);
     const double a = length_of(before), b = length_of(now);
-    if (fabs(a - b) <= 0.5 + 0.01 * MAX(a, b) || before->len > (2 * SAMPLES + 1) * MOST ||
+    if ((same && fabs(a - b) <= 0.5 + 0.01 * MAX(a, b)) || before->len > (2 * SAMPLES + 1) * MOST ||
         now->len > (2 * SAMPLES + 1) * MOST)
         return false;
     const GArray *small = a < b ? before : now, *large = a < b ? now : before;
-    const double tolerance = MIN(LIES_ON_PX, LIES_ON * fabs(a - b)); // limbs also turn aside
+    // limbs also turn aside; what is added may be as long as what it hides
+    const double tolerance = CLAMP(LIES_ON * fabs(a - b), STILL_PX, LIES_ON_PX);
     const guint step = MAX(3, small->len / LOOKED_AT), n = (small->len + step - 1) / step;
     const double on = open ? 0.95 : same ? 0.9 : 0.7; // of a closed one the tip moves on
     guint may_be_off = n - (guint)ceil(on * n);

@@ -124,10 +124,19 @@ static bool has_grown(const float before[4], const float now[4], const float pag
     return grown && !shrunk;
 }
 
+/* True if an outline that begins where it began has more nodes than before, or fewer. */
+static bool is_drawn_on(const FlPose *before, const FlPose *now)
+{
+    return before->n > 0 && now->n > 0 && before->n != now->n &&
+           fabsf(now->start_x - before->start_x) < HELD_PX &&
+           fabsf(now->start_y - before->start_y) < HELD_PX;
+}
+
 /* Paint stays where it is in a leaf that is being built, or the reverse. */
 static bool stays(const FlSurveyPart *before, const FlSurveyPart *now, const float page[2])
 {
-    return has_grown(before->box, now->box, page) || has_grown(now->box, before->box, page);
+    return is_drawn_on(&before->pose, &now->pose) || has_grown(before->box, now->box, page) ||
+           has_grown(now->box, before->box, page);
 }
 
 /* steady: its nodes are the same ones where they are as many. */

@@ -125,7 +125,9 @@ static void find_harmonics(const FlPoint *node, int n, FlPoint mean, float harmo
 
 bool fl_pose_is_sound(const FlPose *pose)
 {
-    const float px[] = {pose->x,
+    const float px[] = {pose->start_x,
+                        pose->start_y,
+                        pose->x,
                         pose->y,
                         pose->middle_x,
                         pose->middle_y,
@@ -151,7 +153,7 @@ static FlPose sound(FlPose pose)
 FlPose fl_point_pose(FlPoint point)
 {
     const float x = (float)point.x, y = (float)point.y;
-    return sound((FlPose){.n = 1, .x = x, .y = y, .middle_x = x, .middle_y = y});
+    return sound((FlPose){1, x, y, x, y, x, y});
 }
 
 FlPose fl_outline_pose(const FlOutlines *outlines, int leaf)
@@ -167,7 +169,10 @@ FlPose fl_outline_pose(const FlOutlines *outlines, int leaf)
         mean.x += p.x / n, mean.y += p.y / n;
     }
     const FlPoint middle = middle_of(&outline);
+    const FlPoint start = g_array_index(nodes, FlPoint, 0);
     FlPose pose = {.n = n,
+                   .start_x = (float)start.x,
+                   .start_y = (float)start.y,
                    .x = (float)mean.x,
                    .y = (float)mean.y,
                    .middle_x = (float)middle.x,

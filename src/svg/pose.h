@@ -10,6 +10,7 @@
 /** Of the nodes of an outline, px of the picture, on the page or not. */
 typedef struct FlPose {
     int32_t n;                // nodes; 0: the pose is unknown
+    float start_x, start_y;   // the first one
     float x, y;               // their mean
     float middle_x, middle_y; // of what the outline encloses, whatever its nodes are
     float spread[3];          // variances along x and y of what it encloses, their covariance, px^2
