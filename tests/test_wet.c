@@ -218,6 +218,31 @@ static void test_quick(void)
     scene_free(scene);
 }
 
+/* The ink of the stains in the 8 columns behind a disk that goes from x0 to x0 + 24. */
+static float ink_behind(float x0)
+{
+    Scene *scene = scene_new();
+    const int edge = (int)x0 + 24 - RADIUS;
+    float sum = 0;
+    mark(scene, x0, x0 + 24, 0);
+    for (guint i = 0; i < scene->stains->len; i++) {
+        const FlStainMark *stain = &g_array_index(scene->stains, FlStainMark, i);
+        if (stain->at % SIDE >= edge - 8 && stain->at % SIDE < edge)
+            sum += stain->charge * stain->ink[0];
+    }
+    scene_free(scene);
+    return sum;
+}
+
+/* A disk that comes in from beyond a side of the page leaves a stain there as it does within. */
+static void test_comes_in(void)
+{
+    const float within = ink_behind(100), side = ink_behind(RADIUS - 14);
+    g_test_message("%.1f within the page, %.1f at its side", within, side);
+    g_assert_cmpfloat(within, >, 10);
+    g_assert_cmpfloat(side, >, 0.8f * within);
+}
+
 static void test_turn(void)
 {
     Scene *scene = scene_new();
@@ -627,6 +652,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/a-turn-after-quick-motion-leaves-less", test_turn);
     g_test_add_func("/wet/a-disk-that-spins-passes-straight-on", test_spin);
     g_test_add_func("/wet/stains-know-how-far-their-sides-are", test_sides);
+    g_test_add_func("/wet/stains-at-the-side-of-the-page", test_comes_in);
     g_test_add_func("/wet/stains-break-up-where-they-begin", test_start);
     g_test_add_func("/wet/paint-that-passes-takes-up-a-stain", test_taken_up);
     g_test_add_func("/wet/a-stain-breaks-up-towards-its-sides", test_frayed);

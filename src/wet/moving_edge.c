@@ -170,10 +170,15 @@ static bool find_motion(const FlWetShape *shape, FlEdgePoint *point)
     return false;
 }
 
-/** The depth that the place a point comes from had in the frame before. */
+/** The depth that the place a point comes from had in the frame before; beyond the page the
+ * contour is taken to have come along with the motion. */
 static float depth_before(const FlWetShape *shape, const FlEdgePoint *point, float u, float v)
 {
-    return fl_wet_plane_at(shape->distance_before, shape->rect, point->x - u, point->y - v);
+    const float x = point->x - u, y = point->y - v;
+    const float px = (float)shape->rect.x + x, py = (float)shape->rect.y + y;
+    const bool seen = px >= 0 && py >= 0 && px <= (float)shape->page.width - 1 &&
+                      py <= (float)shape->page.height - 1;
+    return seen ? fl_wet_plane_at(shape->distance_before, shape->rect, x, y) : point->depth;
 }
 
 /** A point of a shape that spins goes on with the whole shape, as far as that brings the contour to
@@ -240,8 +245,8 @@ static void find_kept(const FlWetShape *shape, float pace_before, FlEdgePoint *p
 }
 
 /** The ink of the paint a little inside the edge, in the frame before; where the shape has just
- * come, that is inside the nearest earlier edge. A shape that has faded has no ink; paint that
- * another shape covers keeps its earlier one. */
+ * come, that is inside the nearest earlier edge, and at the side of the page beyond it. A shape
+ * that has faded has no ink; paint that another shape covers keeps its earlier one. */
 static void find_ink(const FlWetShape *shape, const FlMovingEdge *before, const FlEdgePoint *was,
                      FlEdgePoint *point)
 {
@@ -255,9 +260,8 @@ static void find_ink(const FlWetShape *shape, const FlMovingEdge *before, const 
     y = fresh ? (float)before->rect.y + was->y : (float)shape->rect.y + y;
     for (int k = 1; k <= 4; k++) {
         const float depth = MIN(2.2f * (float)k * shape->px, 0.8f * point->half_width);
-        const int px = (int)floorf(x - depth * nx + 0.5f), py = (int)floorf(y - depth * ny + 0.5f);
-        if (px < 0 || py < 0 || px >= laid->width || py >= laid->height)
-            continue;
+        const int px = CLAMP((int)floorf(x - depth * nx + 0.5f), 0, laid->width - 1);
+        const int py = CLAMP((int)floorf(y - depth * ny + 0.5f), 0, laid->height - 1);
         const size_t cell = (size_t)py * (size_t)laid->width + (size_t)px;
         if (laid->region[cell] < shape->region)
             continue;
