@@ -151,7 +151,7 @@ static void a_sheet_is_known(void)
     g_autoptr(FlPaperSheet) sheet = sheet_of("cold", 1, 200, 200, 0);
     g_autofree char *sum =
         g_compute_checksum_for_data(G_CHECKSUM_SHA256, (const guchar *)sheet->tooth, 200 * 200);
-    g_assert_cmpstr(sum, ==, "c92c2e52978318131d35fcc2424772cecd6e5a3da23c4638e7d4bf8a573970bb");
+    g_assert_cmpstr(sum, ==, "e022cf1cc9f1df1b6a458b1f3383d70ca0a1af3a103000b3b47a2124e4a694c3");
 }
 
 static void all_frames_have_the_same_sheet_unless_it_boils(void)
@@ -241,6 +241,25 @@ static void papers_are_chosen(void)
     g_assert_nonnull(fl_paper_ground("kraft"));
     g_assert_null(fl_paper_ground("cold"));
     g_assert_null(fl_paper_ground(NULL));
+}
+
+/* The style's own, unless a paper is asked for; the usual one is cold. */
+static void a_style_has_a_sheet_of_its_own(void)
+{
+    const FlSheetStyle own = {.grain = 5, .stretch = 1.3f, .tooth = .6f, .relief = 1};
+    const FlSheetStyle usual = FL_SHEET_DEFAULTS;
+    const FlPaperChoice choices[] = {
+        {.paper = "cold", .sheet = &own}, {.sheet = &usual}, {.sheet = &own}};
+    FlPaperSheet *sheet[3];
+    for (int k = 0; k < 3; k++) {
+        FlPaperChoice choice = choices[k];
+        choice.scale = 1, choice.relief = 1, choice.seed = 1;
+        g_assert_true(fl_paper_sheet_make(&choice, true, 60, 40, &sheet[k], NULL));
+    }
+    g_assert_cmpmem(sheet[0]->tooth, 2400, sheet[1]->tooth, 2400);
+    g_assert_cmpint(memcmp(sheet[0]->tooth, sheet[2]->tooth, 2400), !=, 0);
+    for (int k = 0; k < 3; k++)
+        fl_paper_sheet_free(sheet[k]);
 }
 
 static void a_file_is_laid_side_by_side(void)
@@ -382,6 +401,7 @@ int main(int argc, char **argv)
     g_test_add_func("/paper/a-page-of-half-the-size-shows-the-same-sheet",
                     a_page_of_half_the_size_shows_the_same_sheet);
     g_test_add_func("/paper/papers-are-chosen", papers_are_chosen);
+    g_test_add_func("/paper/a-style-has-a-sheet-of-its-own", a_style_has_a_sheet_of_its_own);
     g_test_add_func("/paper/a-file-is-laid-side-by-side", a_file_is_laid_side_by_side);
     g_test_add_func("/paper/granulation-keeps-the-tone", granulation_keeps_the_tone);
     g_test_add_func("/paper/wet-paint-settles-and-dry-paint-catches",

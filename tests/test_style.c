@@ -121,7 +121,8 @@ static void style_ini_values_are_taken(void)
                "# a comment\n[style]\nname = Ink\nauthor=A. Painter\nfps = 12.5\nborder = 9\n"
                "medium = opaque\npaper = #fed\nlicence=\nmade-by=recipe.ini\n"
                "missing-orientations = up, down\ngranulation = -0.5\n[recipe]\nsteps = 3\n"
-               "[front]\nwidth = 0\ngranulation = 0.75\n[region]\nengine = lazyfluids\n");
+               "[front]\nwidth = 0\ngranulation = 0.75\n[sheet]\ngrain = 5\n[region]\nengine = "
+               "lazyfluids\n");
     g_autoptr(FlStyle) style = fl_style_load(folder, &error);
     g_assert_no_error(error);
     g_assert_cmpstr(style->name, ==, "Ink");
@@ -137,6 +138,8 @@ static void style_ini_values_are_taken(void)
     g_assert_cmpfloat(style->front.width, ==, 0);
     g_assert_cmpfloat(style->front.granulation, ==, 0.75f);
     g_assert_cmpfloat(style->front.stain, ==, 0.42f); // not given
+    g_assert_cmpfloat(style->sheet.grain, ==, 5);
+    g_assert_cmpfloat(style->sheet.stretch, ==, 2.4f); // not given
     g_assert_cmpuint(style->guessed, ==, FL_GUESS_MASK | FL_GUESS_FLOW);
     g_autofree char *text = fl_manifest_text(style);
     g_assert_true(g_str_has_suffix(text, "\n[region]\nengine = lazyfluids\n"));

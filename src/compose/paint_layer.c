@@ -180,13 +180,29 @@ static bool run_together(const FlLayer *layer, const FlLayerSources *sources, in
     return true;
 }
 
+/* The strength by which a region's paint granulates. Heavy pigments settle in the hollows of wet
+ * paper and fine ones stain it evenly, so that each fill has a grain of its own. */
+static float granulation_of(const FlLayerSources *sources, const FlPaintedRegion *painted,
+                            float white)
+{
+    const double said = painted->settings->granulation;
+    const float granulation =
+        (1 - .8f * white) * (isnan(said) ? painted->style->granulation : (float)said);
+    if (granulation <= 0) // dry paint has none that settles
+        return granulation;
+    const FlMixture mixture = fl_mixture_of(fl_fill_of_film(sources->input, painted));
+    const float share = (float)mixture.share;
+    const float heavy =
+        (1 - share) * mixture.pigment[0]->granulation + share * mixture.pigment[1]->granulation;
+    return granulation * (.5f + 1.4f * heavy);
+}
+
 /* Colours a layer by its amounts of paint, once wash and the paper's grain are in them; not in
  * paint that keeps the exemplar's own colours. */
 static bool colour_layer(FlLayer *layer, const FlLayerSources *sources, int r,
                          const FlPaintedRegion *painted, const FlColouring *colouring,
                          int16_t *amounts, GError **error)
 {
-    const FlRegionSettings *t = painted->settings;
     const FlPaintedPart part = part_of(painted);
     const FlWash *wash = fl_wash_of_draw(sources->washes, r);
     g_autofree int8_t *play = NULL;
@@ -199,11 +215,9 @@ static bool colour_layer(FlLayer *layer, const FlLayerSources *sources, int r,
     }
     if (!run_together(layer, sources, r, colouring, amounts, &fills, error))
         return false;
-    const float granulation =
-        isnan(t->granulation) ? painted->style->granulation : (float)t->granulation;
-    if (t->tint != FL_TINT_KEEP && marks_of(painted) <= FL_MARKS_OFF)
-        fl_granulate(granulation * (1 - .8f * white), sources->input->tooth, &layer->area, amounts,
-                     play);
+    if (painted->settings->tint != FL_TINT_KEEP && marks_of(painted) <= FL_MARKS_OFF)
+        fl_granulate(granulation_of(sources, painted, white), sources->input->tooth, &layer->area,
+                     amounts, play);
     FlColouring coloured = *colouring;
     coloured.play = play;
     coloured.picture = fills ? fills : colouring->picture;

@@ -26,6 +26,7 @@ typedef struct FlStyleInstance {
     FlFluidKind fluid; // FL_FLUID_STYLE: none
     FlFrontStyle front;
     FlWashStyle wash;
+    FlSheetStyle sheet;
     float enlarged;  // px of the drawing per px of its pictures
     float border_px; // of its rim, px of the drawing as it is painted
     uint8_t paper[3];

@@ -22,35 +22,26 @@ enum {
 };
 
 // clang-format off
-/* Matched with scans by eye, by the deviation of L* and by the spectrum. mean, dev, slope_dev and
- * fine_dev are those of the sum over a large sheet; they do not depend on the picture, or a crop of
- * it would have another paper. */
+/* Matched with scans by eye, by the deviation of L* and by the spectrum. */
 static const FlPaperGrain grains[FL_PAPER_KINDS] = {
-    [FL_PAPER_COLD] = {.grain = 2.7f, .stretch = 2.4f, .warp = .15f, .crease = .1f, .tooth = 1.8f,
-                       .tooth_stretch = 2.2f, .fibre = .15f, .fibres = 2.2f, .fibre_px = 26, .fibre_mean = 0.049f, .fibre_dev = 0.157f,
-                       .mean = 0.049f, .dev = 1.005f, .slope_dev = 0.705f, .fine_dev = 0.951f,
+    [FL_PAPER_COLD] = {.sheet = FL_SHEET_DEFAULTS, .warp = .15f, .crease = .1f,
+                       .fibres = 2.2f, .fibre_px = 26,
                        .relief = .017f, .cloud = .005f, .streak = .002f, .warm = .004f,
                        .colour = {0xf5, 0xf0, 0xe6}},
-    [FL_PAPER_HOT] = {.grain = 6.5f, .stretch = 1.3f, .warp = .45f, .crease = .12f, .tooth = .45f,
-                      .tooth_stretch = 1.3f, .fibre = .40f, .fibres = 2.2f, .fibre_px = 26, .fibre_mean = 0.049f, .fibre_dev = 0.157f,
-                      .mean = 0.060f, .dev = 0.642f, .slope_dev = 0.627f, .fine_dev = 0.858f,
+    [FL_PAPER_HOT] = {.sheet = {6.5f, 1.3f, .45f, .4f, 1}, .warp = .45f, .crease = .12f,
+                      .fibres = 2.2f, .fibre_px = 26,
                       .relief = .0105f, .cloud = .006f, .streak = .003f, .warm = .004f,
                       .colour = {0xf8, 0xf5, 0xee}},
-    [FL_PAPER_ROUGH] = {.grain = 9, .stretch = 1.15f, .warp = .35f, .crease = .25f, .tooth = .40f,
-                        .tooth_stretch = 1, .fibre = .30f, .fibres = 4, .fibre_px = 16, .fibre_mean = 0.054f, .fibre_dev = 0.165f,
-                        .mean = 0.121f, .dev = 0.648f, .slope_dev = 0.584f, .fine_dev = 0.803f,
+    [FL_PAPER_ROUGH] = {.sheet = {9, 1.15f, .4f, .3f, 1}, .warp = .35f, .crease = .25f,
+                        .fibres = 4, .fibre_px = 16,
                         .relief = .024f, .cloud = .006f, .streak = .002f, .warm = .004f,
                         .colour = {0xf3, 0xee, 0xe4}},
-    [FL_PAPER_LAID] = {.grain = 6, .stretch = 1.4f, .warp = .45f, .crease = .15f, .tooth = .55f,
-                       .tooth_stretch = 1, .fibre = .40f, .fibres = 4, .fibre_px = 16, .fibre_mean = 0.054f, .fibre_dev = 0.165f,
-                       .laid = .75f, .line = 6,
-                       .mean = 0.032f, .dev = 0.570f, .slope_dev = 0.654f, .fine_dev = 0.878f,
+    [FL_PAPER_LAID] = {.sheet = {6, 1.4f, .55f, .4f, 1}, .warp = .45f, .crease = .15f,
+                       .fibres = 4, .fibre_px = 16, .laid = .75f, .line = 6,
                        .relief = .0125f, .cloud = .008f, .streak = .003f, .warm = .006f,
                        .flecks = .05f, .colour = {0xee, 0xe6, 0xd4}, .tinted = true},
-    [FL_PAPER_KRAFT] = {.grain = 5, .stretch = 2, .warp = .45f, .crease = .15f, .tooth = .95f,
-                        .tooth_stretch = 1.9f, .fibre = .55f, .fibres = 9, .fibre_px = 11, .fibre_mean = 0.083f, .fibre_dev = 0.199f,
-                        .laid = .1f, .line = 6,
-                        .mean = 0.051f, .dev = 0.581f, .slope_dev = 0.663f, .fine_dev = 0.894f,
+    [FL_PAPER_KRAFT] = {.sheet = {5, 2, .95f, .55f, 1}, .warp = .45f, .crease = .15f,
+                        .fibres = 9, .fibre_px = 11, .laid = .1f, .line = 6,
                         .relief = .019f, .cloud = .013f, .streak = .009f, .warm = .012f,
                         .flecks = .09f, .colour = {0xc4, 0xa4, 0x7c}, .tinted = true},
 };
@@ -111,10 +102,10 @@ static void draw_cells(const FlPaperPlace *place, FlRect part, float *grid)
         }
 }
 
-static void centre_fibres(const FlPaperGrain *grain, float *fibres, size_t n)
+static void centre(FlPaperSpread as_drawn, float *values, size_t n)
 {
     for (size_t i = 0; i < n; i++)
-        fibres[i] = (fibres[i] - grain->fibre_mean) / grain->fibre_dev;
+        values[i] = (values[i] - as_drawn.mean) / as_drawn.dev;
 }
 
 void fl_paper_fibres(const FlPaperPlace *place, FlRect box, float *fibres)
@@ -132,7 +123,7 @@ void fl_paper_fibres(const FlPaperPlace *place, FlRect box, float *fibres)
             continue;
         float *grid = fibres + (size_t)(y0 - box.y) * (size_t)box.width;
         draw_cells(place, (FlRect){box.x, y0, box.width, y1 - y0}, grid);
-        centre_fibres(place->grain, grid, (size_t)(y1 - y0) * (size_t)box.width);
+        centre(place->fibre, grid, (size_t)(y1 - y0) * (size_t)box.width);
     }
 }
 
@@ -159,7 +150,8 @@ static void octaves_at(const FlPaperPlace *place, int key, const Stretch *at, in
 /* The place of the felt's bumps, bent so that they are not round. */
 static void bend(const FlPaperPlace *place, const Stretch *at, Stretch *bent)
 {
-    const FlPaperGrain *p = place->grain;
+    const FlSheetStyle *p = &place->grain->sheet;
+    const float warp = place->grain->warp * p->grain;
     float by_x[FL_NOISE_ROW], by_y[FL_NOISE_ROW];
     Stretch wide = {.n = at->n};
     for (int i = 0; i < at->n; i++)
@@ -168,8 +160,8 @@ static void bend(const FlPaperPlace *place, const Stretch *at, Stretch *bent)
     noise_at(place, KEY_WARP_Y, &wide, by_y);
     bent->n = at->n;
     for (int i = 0; i < at->n; i++) {
-        bent->x[i] = (at->x[i] + p->warp * p->grain * by_x[i]) / (p->grain * p->stretch);
-        bent->y[i] = (at->y[i] + p->warp * p->grain * by_y[i]) / p->grain;
+        bent->x[i] = (at->x[i] + warp * by_x[i]) / (p->grain * p->stretch);
+        bent->y[i] = (at->y[i] + warp * by_y[i]) / p->grain;
     }
 }
 
@@ -177,19 +169,20 @@ static void bend(const FlPaperPlace *place, const Stretch *at, Stretch *bent)
 static void find_surface(const FlPaperPlace *place, const Stretch *at, const float *fibre,
                          float *height)
 {
-    const FlPaperGrain *p = place->grain;
+    const FlSheetStyle *p = &place->grain->sheet;
+    const float creased = 1.6f * place->grain->crease;
     float bump[FL_NOISE_ROW], crease[FL_NOISE_ROW], tooth[FL_NOISE_ROW];
     Stretch bumps, creases = {.n = at->n}, teeth = {.n = at->n};
     bend(place, at, &bumps);
     for (int i = 0; i < at->n; i++) {
         creases.x[i] = 1.7f * bumps.x[i], creases.y[i] = 1.7f * bumps.y[i];
-        teeth.x[i] = at->x[i] / (2.2f * p->tooth_stretch), teeth.y[i] = at->y[i] / 2.2f;
+        teeth.x[i] = at->x[i] / (2.2f * p->stretch), teeth.y[i] = at->y[i] / 2.2f;
     }
     octaves_at(place, KEY_BUMPS, &bumps, 3, 1, bump);
     noise_at(place, KEY_CREASES, &creases, crease);
     octaves_at(place, KEY_TOOTH, &teeth, 2, .8f, tooth);
     for (int i = 0; i < at->n; i++)
-        height[i] = 1.6f * bump[i] + 1.6f * p->crease * (1 - 2.5f * fabsf(crease[i])) +
+        height[i] = 1.6f * bump[i] + creased * (1 - 2.5f * fabsf(crease[i])) +
                     1.3f * p->tooth * tooth[i] + .5f * p->fibre * fibre[i];
 }
 
@@ -205,15 +198,14 @@ static void add_mould(const FlPaperPlace *place, const Stretch *at, float *heigh
 static void fill_row(const FlPaperPlace *place, FlRect box, int y, const float *fibres,
                      float *height)
 {
-    const float px = 1 / place->scale, mean = place->grain->mean, dev = place->grain->dev;
+    const float px = 1 / place->scale;
     for (int x = 0; x < box.width; x += FL_NOISE_ROW) {
         Stretch at = {.n = MIN(box.width - x, FL_NOISE_ROW)};
         for (int i = 0; i < at.n; i++)
             at.x[i] = (float)(box.x + x + i) * px, at.y[i] = (float)(box.y + y) * px;
         find_surface(place, &at, fibres + x, height + x);
         add_mould(place, &at, height + x);
-        for (int i = 0; i < at.n; i++)
-            height[x + i] = (height[x + i] - mean) / dev;
+        centre(place->height, height + x, (size_t)at.n);
     }
 }
 

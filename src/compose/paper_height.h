@@ -3,6 +3,7 @@
 #define FLUIDY_COMPOSE_PAPER_HEIGHT_H
 
 #include "base/rect.h"
+#include "style/style_folder.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -21,28 +22,30 @@ typedef enum FlPaperKind {
 
 /** The make of a kind of paper. Lengths are px of a sheet of scale 1. */
 typedef struct FlPaperGrain {
-    float grain, stretch, warp;         // of the bumps: size, how much wider than high, bend
-    float crease, tooth, tooth_stretch; // weights of finer things
-    float fibre;                        // weight of fibres in the height
-    float fibres, fibre_px;             // their number in 1000 square px, their length
-    float fibre_mean, fibre_dev;        // of what they cover, as drawn
-    float laid, line;                   // weight of laid lines and their distance; 0: no lines
-    float mean, dev, slope_dev;         // of the height, and of its slope once it is normalised
-    float fine_dev;                     // of its structures finer than 2.5 px
-    float relief, cloud, streak, warm;  // shares of light: of the relief, of slow clouds, of
-                                        // fibres, and of blue that comes and goes
-    float flecks;                       // darkness of flecks; 0: the paper has no flecks
-    uint8_t colour[3];                  // sRGB; of tinted papers, see `tinted`
-    bool tinted;                        // it is no white paper: its colour is the ground
+    FlSheetStyle sheet;
+    float warp, crease;                // bend of the bumps, weight of creases between them
+    float fibres, fibre_px;            // number of fibres in 1000 square px, their length
+    float laid, line;                  // weight of laid lines and their distance; 0: no lines
+    float relief, cloud, streak, warm; // shares of light: of the relief, of slow clouds, of
+                                       // fibres, and of blue that comes and goes
+    float flecks;                      // darkness of flecks; 0: the paper has no flecks
+    uint8_t colour[3];                 // sRGB; of tinted papers, see `tinted`
+    bool tinted;                       // it is no white paper: its colour is the ground
 } FlPaperGrain;
 
 const FlPaperGrain *fl_paper_grain(FlPaperKind kind);
+
+/** A mean and a deviation. */
+typedef struct FlPaperSpread {
+    float mean, dev;
+} FlPaperSpread;
 
 /** A sheet: the same seed and scale are the same surface, however much of it is asked for. */
 typedef struct FlPaperPlace {
     const FlPaperGrain *grain;
     uint64_t seed;
-    float scale; // output px per px of the sheet, > 0
+    float scale;                 // output px per px of the sheet, > 0
+    FlPaperSpread fibre, height; // of a large sheet, as drawn
 } FlPaperPlace;
 
 /**

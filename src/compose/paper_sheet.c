@@ -15,6 +15,7 @@
 
 #define FINE_PX 2.5f    // wider structures are not part of the tooth
 #define TOOTH_END 2.2f  // standard deviations
+#define PATCH_PX 256    // side of the patch whose spreads are those of a whole sheet
 #define SLOW_PX 8       // clouds and warmth are known every so many px
 #define ROOM_PX 256     // that the sheet is larger than a frame if other parts of it are wanted
 #define MOST_FINER 4    // times that small pages are made larger, at most
@@ -26,6 +27,7 @@
 /* The planes of a sheet and a margin for blur and slope. */
 typedef struct Surface {
     FlPaperPlace place;
+    FlPaperSpread slope, fine; // of the height, and of what of it is finer than FINE_PX
     float relief;
     int margin;
     FlRect box; // the sheet and the margin
@@ -65,20 +67,74 @@ static void fill_slow(Surface *surface)
         }
 }
 
+/* The slope towards the light, which comes from the upper left. */
+static float slope_at(const Surface *surface, const float *height)
+{
+    const float half = .5f * surface->place.scale;
+    const int row = surface->box.width;
+    const float dx = (height[1] - height[-1]) * half, dy = (height[row] - height[-row]) * half;
+    return .5f * dx + .87f * dy;
+}
+
+static bool find_smooth(Surface *surface, GError **error)
+{
+    memcpy(surface->smooth, surface->height, fl_rect_pixels(surface->box) * sizeof(float));
+    return fl_blur(surface->smooth, surface->box.width, surface->box.height,
+                   FINE_PX * surface->place.scale, error);
+}
+
+static FlPaperSpread spread_of(const float *values, size_t n)
+{
+    double sum = 0, squares = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += (double)values[i], squares += (double)values[i] * (double)values[i];
+    const double mean = sum / (double)n;
+    return (FlPaperSpread){(float)mean, (float)sqrt(squares / (double)n - mean * mean)};
+}
+
+/* The spreads of a patch of scale 1, for a surface: those of a picture would be others in its
+ * crops. */
+static bool find_spreads(Surface *surface, GError **error)
+{
+    const FlPaperSpread as_drawn = {0, 1};
+    Surface patch = {.place = {surface->place.grain, 1, 1, as_drawn, as_drawn},
+                     .box = {0, 0, PATCH_PX, PATCH_PX},
+                     .slow = {0, 0, 1, 1}};
+    const size_t n = fl_rect_pixels(patch.box);
+    bool made = surface_alloc(&patch, error);
+    if (made) {
+        fl_paper_fibres(&patch.place, patch.box, patch.fibres);
+        patch.place.fibre = spread_of(patch.fibres, n);
+        fl_paper_fibres(&patch.place, patch.box, patch.fibres);
+        fl_paper_height(&patch.place, patch.box, patch.fibres, patch.height);
+        patch.place.height = spread_of(patch.height, n);
+        fl_paper_height(&patch.place, patch.box, patch.fibres, patch.height);
+        made = find_smooth(&patch, error);
+    }
+    if (made) {
+        surface->place.fibre = patch.place.fibre, surface->place.height = patch.place.height;
+        for (size_t i = 0; i < n; i++)
+            patch.smooth[i] = patch.height[i] - patch.smooth[i];
+        surface->fine = spread_of(patch.smooth, n);
+        for (size_t i = PATCH_PX + 1; i < n - PATCH_PX - 1; i++)
+            patch.smooth[i] = slope_at(&patch, patch.height + i);
+        surface->slope = spread_of(patch.smooth + PATCH_PX, n - 2 * PATCH_PX);
+    }
+    surface_clear(&patch);
+    return made;
+}
+
 static bool surface_make(Surface *surface, const FlPaperSheet *sheet, GError **error)
 {
     const int m = surface->margin;
-    const size_t n = (size_t)(sheet->width + 2 * m) * (size_t)(sheet->height + 2 * m);
     surface->box = (FlRect){-m, -m, sheet->width + 2 * m, sheet->height + 2 * m};
     surface->slow = (FlRect){0, 0, sheet->width / SLOW_PX + 2, sheet->height / SLOW_PX + 2};
-    if (!surface_alloc(surface, error))
+    if (!find_spreads(surface, error) || !surface_alloc(surface, error))
         return false;
     fl_paper_fibres(&surface->place, surface->box, surface->fibres);
     fl_paper_height(&surface->place, surface->box, surface->fibres, surface->height);
     fill_slow(surface);
-    memcpy(surface->smooth, surface->height, n * sizeof(float));
-    return fl_blur(surface->smooth, surface->box.width, surface->box.height,
-                   FINE_PX * surface->place.scale, error);
+    return find_smooth(surface, error);
 }
 
 static float slow_at(const Surface *surface, const float *plane, int x, int y)
@@ -91,13 +147,10 @@ static float slow_at(const Surface *surface, const float *plane, int x, int y)
     return a + (b - a) * ty;
 }
 
-/* The light comes from the upper left; hollows are darker, as scans are skewed that way. */
+/* Hollows are darker, as scans are skewed that way. */
 static float light_at(const Surface *surface, const float *height)
 {
-    const float half = .5f * surface->place.scale;
-    const int row = surface->box.width;
-    const float dx = (height[1] - height[-1]) * half, dy = (height[row] - height[-row]) * half;
-    const float slope = (.5f * dx + .87f * dy) / surface->place.grain->slope_dev;
+    const float slope = slope_at(surface, height) / surface->slope.dev;
     const float light = .6f * slope + .5f * height[0];
     return light * (light < 0 ? 1.2f : .85f);
 }
@@ -117,9 +170,9 @@ static void fill_pixel(const Surface *surface, int x, int y, uint16_t factor[4],
     const float light = (light_at(surface, surface->height + at) + .11f) / .82f;
     const float fleck = grain->flecks > 0 ? fl_paper_fleck(&surface->place, (float)x, (float)y) : 0;
     const float warm = .5f * slow_at(surface, surface->warmth, x, y) + .25f * fibre;
-    const float share = grain->relief * light + grain->cloud * cloud + .5f * grain->streak * fibre -
-                        grain->flecks * fleck;
-    const float fine = (height - surface->smooth[at]) / grain->fine_dev;
+    const float share = grain->sheet.relief * grain->relief * light + grain->cloud * cloud +
+                        .5f * grain->streak * fibre - grain->flecks * fleck;
+    const float fine = (height - surface->smooth[at]) / surface->fine.dev;
     factor[0] = factor_of(surface->relief * share);
     factor[1] = factor_of(surface->relief * (share - .3f * grain->warm * warm));
     factor[2] = factor_of(surface->relief * (share - 1.6f * grain->warm * warm));
@@ -152,7 +205,10 @@ static bool sheet_alloc(FlPaperSheet *sheet, GError **error)
 static bool fill_sheet(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, float scale,
                        GError **error)
 {
-    const FlPaperPlace place = {fl_paper_grain((FlPaperKind)MAX(kind, 0)), choice->seed, scale};
+    FlPaperGrain grain = *fl_paper_grain((FlPaperKind)MAX(kind, 0));
+    if (choice->sheet && (!choice->paper || g_str_equal(choice->paper, "auto")))
+        grain.sheet = *choice->sheet;
+    const FlPaperPlace place = {.grain = &grain, .seed = choice->seed, .scale = scale};
     if (!sheet_alloc(sheet, error))
         return false;
     const FlPaperPlanes planes = {sheet->width, sheet->height, sheet->factor, sheet->tooth};

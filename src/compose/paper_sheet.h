@@ -5,12 +5,14 @@
 
 #include "base/spill.h"
 #include "compose/paper_file.h"
+#include "style/style_folder.h"
 
 /** Which paper. */
 typedef struct FlPaperChoice {
     const char *paper; // a word of FL_PAPER_WORDS, a PNG file, "none" or "auto"; NULL: "auto"
-    double scale;      // output px per px of the sheet; 0: as the page asks for
-    double relief;     // strength of its light, 0..2
+    const FlSheetStyle *sheet; // that "auto" is; NULL: it is cold
+    double scale;              // output px per px of the sheet; 0: as the page asks for
+    double relief;             // strength of its light, 0..2
     uint64_t seed;
     int boil; // frames after which another sheet is taken; 0: never
 } FlPaperChoice;
@@ -39,7 +41,7 @@ bool fl_paper_check(const char *paper, GError **error);
 
 /**
  * Makes the sheet for frames of a size. `plain`: they lie on paper and nothing else, so that "auto"
- * is cold; else it has its tooth alone.
+ * is seen; else it has its tooth alone.
  *
  * *sheet becomes NULL if the paper is none; to be freed with fl_paper_sheet_free().
  * Returns: false with FL_ERROR_USAGE, FL_ERROR_INPUT about the file, FL_ERROR_NO_MEMORY.

@@ -37,6 +37,7 @@ typedef struct FlPlan {
     int n_finished;           // frames of what is finished
     FlCaller caller;          // of the options
     uint8_t paper[3];
+    FlSheetStyle sheet; // of the first painted region's style, as is the paper
 } FlPlan;
 
 /**

@@ -534,7 +534,10 @@ bool fl_plan_choose_styles(FlPlan *plan, GError **error)
         return false;
     note_older_word(plan);
     memset(plan->paper, 255, sizeof plan->paper);
-    if (shapes->n_painted > 0 && shapes->surround)
+    plan->sheet = (FlSheetStyle)FL_SHEET_DEFAULTS;
+    if (shapes->n_painted > 0 && shapes->surround) {
+        plan->sheet = shapes->painted[0].style->sheet;
         memcpy(plan->paper, shapes->painted[0].style->paper, sizeof plan->paper);
+    }
     return shapes->surround != NULL;
 }

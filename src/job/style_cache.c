@@ -137,7 +137,8 @@ static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
                                   .granulation = style->granulation,
                                   .fluid = style->fluid,
                                   .front = style->front,
-                                  .wash = style->wash};
+                                  .wash = style->wash,
+                                  .sheet = style->sheet};
     memcpy(instance->paper, style->paper, sizeof instance->paper);
     FlParams packed = *params;
     packed.style_window = window_of(params, style);

@@ -397,6 +397,7 @@ static bool make_sheet(FlFrames *frames, GError **error)
     const FlShapes *shapes = &plan->shapes;
     const FlRenderOptions *o = &plan->options;
     const FlPaperChoice choice = {.paper = o->paper,
+                                  .sheet = &plan->sheet,
                                   .scale =
                                       shapes->paper_px * (o->paper_scale > 0 ? o->paper_scale : 1),
                                   .relief = o->paper_relief,
@@ -406,6 +407,7 @@ static bool make_sheet(FlFrames *frames, GError **error)
     const int size[] = {width, height, !o->background, choice.boil};
     FlDigest made_of = {0};
     fl_digest_add_text(&made_of, choice.paper);
+    fl_digest_add(&made_of, choice.sheet, sizeof *choice.sheet);
     fl_digest_add(&made_of, &choice.scale, sizeof choice.scale);
     fl_digest_add(&made_of, &choice.relief, sizeof choice.relief);
     fl_digest_add(&made_of, &choice.seed, sizeof choice.seed);

@@ -175,6 +175,7 @@ static FlStyle *new_like(const FlStyle *style)
                      .granulation = style->granulation,
                      .front = style->front,
                      .wash = style->wash,
+                     .sheet = style->sheet,
                      .melt = style->melt,
                      .smoothness = style->smoothness};
     memcpy(out->paper, style->paper, sizeof out->paper);

@@ -78,6 +78,7 @@ static void set_facts(Import *import, const FlRecording *source)
     style->granulation = FL_GRANULATION;
     style->front = (FlFrontStyle)FL_FRONT_DEFAULTS;
     style->wash = (FlWashStyle)FL_WASH_DEFAULTS;
+    style->sheet = (FlSheetStyle)FL_SHEET_DEFAULTS;
 }
 
 static bool store_frames(FlStyle *style, GPtrArray *pictures, GError **error)

@@ -198,6 +198,7 @@ static FlStyle *new_style(const char *folder)
     style->granulation = FL_GRANULATION;
     style->front = (FlFrontStyle)FL_FRONT_DEFAULTS;
     style->wash = (FlWashStyle)FL_WASH_DEFAULTS;
+    style->sheet = (FlSheetStyle)FL_SHEET_DEFAULTS;
     style->guessed =
         FL_GUESS_BORDER | FL_GUESS_PAPER | FL_GUESS_MASK | FL_GUESS_FLOW | FL_GUESS_FPS;
     return style;

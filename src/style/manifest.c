@@ -44,9 +44,18 @@ static const FlTableKey wash_keys[] = {
     {"hue", FL_KEY_OF(NUMBER, FlWashStyle, hue), 0, 12},
 };
 
+static const FlTableKey sheet_keys[] = {
+    {"grain", FL_KEY_OF(NUMBER, FlSheetStyle, grain), 0.5, 50},
+    {"stretch", FL_KEY_OF(NUMBER, FlSheetStyle, stretch), 0.2, 5},
+    {"tooth", FL_KEY_OF(NUMBER, FlSheetStyle, tooth), 0, 4},
+    {"fibre", FL_KEY_OF(NUMBER, FlSheetStyle, fibre), 0, 4},
+    {"relief", FL_KEY_OF(NUMBER, FlSheetStyle, relief), 0, 4},
+};
+
 static const FlKeyTable style_table = {style_keys, G_N_ELEMENTS(style_keys)};
 const FlKeyTable fl_front_table = {front_keys, G_N_ELEMENTS(front_keys)};
 const FlKeyTable fl_wash_table = {wash_keys, G_N_ELEMENTS(wash_keys)};
+const FlKeyTable fl_sheet_table = {sheet_keys, G_N_ELEMENTS(sheet_keys)};
 
 /* A setting of regions that have this style. */
 static bool take_setting(void *settings, const char *name, const char *value, GError **error)
@@ -64,6 +73,7 @@ bool fl_manifest_read(FlStyle *style, const char *path, GError **error)
     FlKeySection sections[] = {{"style", &style_table, style, FL_ERROR_STYLE},
                                {"front", &fl_front_table, &style->front, FL_ERROR_STYLE},
                                {"wash", &fl_wash_table, &style->wash, FL_ERROR_STYLE},
+                               {"sheet", &fl_sheet_table, &style->sheet, FL_ERROR_STYLE},
                                {"region", NULL, &style->settings, FL_ERROR_STYLE, take_setting}};
     if (!fl_key_sections_read(path, sections, G_N_ELEMENTS(sections), error))
         return false;
@@ -91,11 +101,13 @@ char *fl_manifest_text(const FlStyle *style)
                            .border_px = -1,
                            .granulation = FL_GRANULATION,
                            .front = FL_FRONT_DEFAULTS,
-                           .wash = FL_WASH_DEFAULTS};
+                           .wash = FL_WASH_DEFAULTS,
+                           .sheet = FL_SHEET_DEFAULTS};
     GString *text = g_string_new("[style]\n");
     fl_key_table_write(&style_table, style, &plain, style->guessed, text);
     append_section(&fl_front_table, &style->front, &plain.front, "front", text);
     append_section(&fl_wash_table, &style->wash, &plain.wash, "wash", text);
+    append_section(&fl_sheet_table, &style->sheet, &plain.sheet, "sheet", text);
     for (int k = 0; k < style->settings.n; k++)
         g_string_append_printf(text, "%s%s = %s\n", k == 0 ? "\n[region]\n" : "",
                                style->settings.override[k].key, style->settings.override[k].value);

@@ -45,6 +45,20 @@ typedef struct FlWashStyle {
         .wash = 1, .passes = 1, .tide = 1, .pool = 1, .blooms = 1, .hue = 4.4f                     \
     }
 
+/** The sheet of paper that a style is painted on unless one is chosen; see fluidy-style(5). */
+typedef struct FlSheetStyle {
+    float grain;   // size of its bumps, px of a page of 1000 px, > 0
+    float stretch; // how much wider than high they are, > 0
+    float tooth;   // weight of what is finer, 0..4
+    float fibre;   // weight of fibres, 0..4
+    float relief;  // strength of its light, as a share of the usual one, 0..4
+} FlSheetStyle;
+
+#define FL_SHEET_DEFAULTS                                                                          \
+    {                                                                                              \
+        .grain = 2.7f, .stretch = 2.4f, .tooth = 1.8f, .fibre = 0.15f, .relief = 1                 \
+    }
+
 /** A style in memory. Frames follow each other without padding, rows from the top. */
 typedef struct FlStyle {
     char *name;      // the folder's name, or style.ini's
@@ -62,6 +76,7 @@ typedef struct FlStyle {
     FlFluidKind fluid; // that carries its paint; FL_FLUID_STYLE: none is given
     FlFrontStyle front;
     FlWashStyle wash;
+    FlSheetStyle sheet;
     float melt;       // 0..1: 1 if its pieces melt into each other when they are put together
     float smoothness; // of its recording: see fl_style_smoothness()
     uint8_t *rgb;     // n_frames * height * width * 3, sRGB

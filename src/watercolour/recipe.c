@@ -22,6 +22,7 @@ static FlRecipe *defaults(void)
         .granulation = FL_GRANULATION,
         .front = FL_FRONT_DEFAULTS,
         .wash = FL_WASH_DEFAULTS,
+        .sheet = FL_SHEET_DEFAULTS,
         .steps = {60},
         .warm_up = 1,
         .seed = 1,
@@ -208,6 +209,7 @@ static const struct {
     {"recipe", &recipe_table, 0},
     {"front", &fl_front_table, offsetof(FlRecipe, front)},
     {"wash", &fl_wash_table, offsetof(FlRecipe, wash)},
+    {"sheet", &fl_sheet_table, offsetof(FlRecipe, sheet)},
     {"paper", &paper_table, offsetof(FlRecipe, paper)},
     {"flow", &flow_table, offsetof(FlRecipe, flow)},
     {"dust", &dust_table, offsetof(FlRecipe, dust)},
@@ -274,8 +276,8 @@ static bool begin_section(void *data, const char *name, int line, GError **error
         keys.table = &event_table, keys.object = begin_event(reader->recipe, error);
     else if (!keys.table)
         return fl_fail(error, FL_ERROR_INPUT,
-                       "[%s] is not a group of a recipe: expected recipe, front, wash, paper, "
-                       "flow, dust, pigment NAME or event NAME",
+                       "[%s] is not a group of a recipe: expected recipe, front, wash, sheet, "
+                       "paper, flow, dust, pigment NAME or event NAME",
                        name);
     const Section section = {keys, line, g_strdup(name)};
     g_array_append_val(reader->sections, section);

@@ -95,6 +95,7 @@ typedef struct FlRecipe {
     float mask_blur;                   // radius over which the thickness is averaged, px
     FlFrontStyle front;
     FlWashStyle wash;
+    FlSheetStyle sheet;
     FlMedium medium;
     FlMarks marks;
     FlPaper paper;

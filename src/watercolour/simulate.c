@@ -74,6 +74,7 @@ static FlStyle *new_style(const FlRecipe *recipe, int size, const char *recipe_p
         .melt = recipe->melt,
         .front = recipe->front,
         .wash = recipe->wash,
+        .sheet = recipe->sheet,
         .medium = recipe->medium,
         .marks = recipe->marks,
     };
