@@ -215,6 +215,26 @@ static void contrast_stays_where_use_is_equal_and_goes_where_it_is_not(void)
     g_assert_cmpfloat(off, <, .7 * strict);
 }
 
+/* The first frame of a draft, and no other frame, takes the nearest matches on its finest level. */
+static void a_draft_begins_with_less_search_and_the_same_contrast(void)
+{
+    FlFrameStats stats[2][2];
+    double spread[2];
+    for (int draft = 0; draft < 2; draft++) {
+        g_auto(Film) film;
+        film_init(&film, still_of_blotches(), "lazyfluids", "1");
+        film.params->half_size = draft;
+        for (int frame = 0; frame < 2; frame++)
+            g_assert_true(fl_lazy_frame(film.lazy, &film.guides, film.rgb, film.alpha,
+                                        &stats[draft][frame], NULL, NULL));
+        spread[draft] = spread_of(film.rgb, film.guides.mask, PIXELS);
+    }
+    g_assert_cmpint(stats[1][0].level[0].counts.tried, <, stats[0][0].level[0].counts.tried / 2);
+    g_assert_cmpint(stats[1][0].level[1].counts.tried, ==, stats[0][0].level[1].counts.tried);
+    g_assert_cmpint(stats[1][1].level[0].counts.tried, >, stats[0][1].level[0].counts.tried / 2);
+    g_assert_cmpfloat(spread[1], >, .9 * spread[0]);
+}
+
 /* Alpha is of the border's matches. */
 static void below_1_the_border_is_matched_freely(void)
 {
@@ -505,6 +525,8 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/lazy/contrast-stays-where-use-is-equal-and-goes-where-it-is-not",
                     contrast_stays_where_use_is_equal_and_goes_where_it_is_not);
+    g_test_add_func("/lazy/a-draft-begins-with-less-search-and-the-same-contrast",
+                    a_draft_begins_with_less_search_and_the_same_contrast);
     g_test_add_func("/lazy/below-1-the-border-is-matched-freely",
                     below_1_the_border_is_matched_freely);
     g_test_add_func("/lazy/a-cut-out-has-the-alpha-of-its-exemplar-and-no-paper-in-its-colours",

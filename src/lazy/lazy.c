@@ -335,16 +335,18 @@ static bool start_picture(FlLazy *lazy, int l, GError **error)
     return true;
 }
 
-/* Border, then interior; on a level without separate ones the first is all. */
+/* Border, then interior; on a level without separate ones the first is all. The finest level of a
+ * draft's first frame takes nearest neighbours: the coarser ones have used the style evenly. */
 static bool retrieve(FlLazy *lazy, int l, uint64_t key, FlLevelStats *stats, GError **error)
 {
     Level *level = &lazy->level[l];
     const FlFluidLevel *source = &lazy->source.level[l];
     const FlParams *params = lazy->params;
+    const bool quick = params->half_size && l == 0 && lazy->last.frame == 1;
     stats->energy = 0;
     for (int s = 0; s < 2; s++) {
         const bool border = s == 0 && source->segments.n[1] > 0;
-        const bool freely = border ? params->w_uni < 1 : params->w_uni <= 0;
+        const bool freely = quick || (border ? params->w_uni < 1 : params->w_uni <= 0);
         const FlRetrieval in = {.source = source->picture,
                                 .target = level->picture,
                                 .sources = source->segments.place[s],
