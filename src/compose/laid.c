@@ -84,21 +84,3 @@ void fl_laid_add(FlLaid *laid, const FlLayer *layer, int region, const uint8_t p
         }
     }
 }
-
-void fl_laid_add_draw(FlLaid *laid, const FlDraw *draw, const uint8_t *colour,
-                      const uint8_t paper[3])
-{
-    const FlRect box = draw->area.box;
-    for (int y = cell_from(laid, box.y); y < laid->height; y++)
-        for (int x = cell_from(laid, box.x); x < laid->width; x++) {
-            const int column = middle(laid, x) - box.x, row = middle(laid, y) - box.y;
-            if (column >= box.width || row >= box.height)
-                break;
-            if (column < 0 || row < 0)
-                continue;
-            const size_t p = (size_t)row * (size_t)box.width + (size_t)column;
-            const uint8_t *own = draw->picture ? draw->picture + 4 * p : draw->rgb;
-            lay_cell(laid, (size_t)y * (size_t)laid->width + (size_t)x, colour ? colour : own,
-                     draw->coverage[p] * draw->alpha / 255, draw->region, paper);
-        }
-}

@@ -22,10 +22,6 @@ void fl_laid_begin(FlLaid *laid);
 /** Lays a layer, bottom first, that has been packed. */
 void fl_laid_add(FlLaid *laid, const FlLayer *layer, int region, const uint8_t paper[3]);
 
-/** Lays a draw, bottom first, as if it were paint. colour: NULL: its own. */
-void fl_laid_add_draw(FlLaid *laid, const FlDraw *draw, const uint8_t *colour,
-                      const uint8_t paper[3]);
-
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlLaid, fl_laid_clear)
 
 #endif

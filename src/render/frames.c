@@ -291,8 +291,10 @@ static bool know_earlier(FlFrames *frames, GError **error)
     g_autoptr(FlMotionSource) motion =
         fl_motion_source_new(shapes->drawing, shapes->masks, true, error);
     g_autoptr(FlWet) wet = motion ? new_wet(frames, shapes, NULL, motion, error) : NULL;
-    const bool known = wet && fl_wet_learn(wet, first, frames->wet, error) &&
-                       fl_wet_frame(wet, first, error) && fl_wet_follow(frames->wet, wet, error);
+    if (wet)
+        fl_wet_learn(wet, frames->wet);
+    const bool known =
+        wet && fl_wet_frame(wet, first, error) && fl_wet_follow(frames->wet, wet, error);
     drop_earlier(frames);
     return known;
 }
@@ -342,8 +344,8 @@ static bool compose(FlFrames *frames, int frame, int next, bool marks, FlComposi
     return made;
 }
 
-/* Marks on the paper from frames before the first one, which are not painted: their fills are as
- * pale near edges as the paint of the first. Drafts begin on clean paper. */
+/* Marks on the paper from frames before the first one, which are not painted: they have the colours
+ * of the first. Drafts have those of the fills. */
 static bool know_before(FlFrames *frames, int frame, double *paint_s, GError **error)
 {
     const FlPlan *plan = frames->plan;
@@ -352,10 +354,12 @@ static bool know_before(FlFrames *frames, int frame, double *paint_s, GError **e
     if (!frames->wet || fl_wet_begun(frames->wet) || frames->small ||
         (!loops && !starts_late(plan)))
         return true;
-    return compose(frames, frame, -1, false, &plain, paint_s, error) &&
-           (loops ? fl_wet_learn(frames->wet, fl_drawing_shown(plan->shapes.drawing, frame),
-                                 frames->wet, error)
-                  : know_earlier(frames, error));
+    if (!compose(frames, frame, -1, false, &plain, paint_s, error))
+        return false;
+    if (!loops)
+        return know_earlier(frames, error);
+    fl_wet_learn(frames->wet, frames->wet);
+    return true;
 }
 
 bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composite, double *paint_s,

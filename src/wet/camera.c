@@ -2,6 +2,7 @@
 #include "wet/wet_data.h"
 
 #include "base/alloc.h"
+#include "base/modes.h"
 #include <math.h>
 
 #define STRIDE 6     // cells between places at which the motion is looked at
@@ -30,60 +31,56 @@ bool fl_wet_find_camera(const FlShapes *shapes, const char *wanted, int *camera,
     return false;
 }
 
-/** Sums for the least squares of (u, v) over (1, x, y). */
-typedef struct Fit {
-    double n, x, y, xx, xy, yy;
-    double u[3], v[3], squares; // times 1, x and y
-} Fit;
-
-static Fit add_up(const float *motion, FlRect page)
+/** Adds the motion of the page to least squares. Returns: the number of places at which it is
+ * known; *squares: of that motion. */
+static int add_motion(const float *motion, FlRect page, FlLeastSquares *sum, double *squares)
 {
-    Fit fit = {0};
+    int n = 0;
     for (int j = STRIDE / 2; j < page.height; j += STRIDE)
         for (int i = STRIDE / 2; i < page.width; i += STRIDE) {
             const float *at = motion + 2 * ((size_t)j * (size_t)page.width + (size_t)i);
-            const double x = i - 0.5 * page.width, y = j - 0.5 * page.height;
+            double mode[FL_MODES][2], row[FL_MODES];
             if (isnan(at[0]) || isnan(at[1]))
                 continue;
-            fit.n++, fit.x += x, fit.y += y;
-            fit.xx += x * x, fit.xy += x * y, fit.yy += y * y;
-            fit.u[0] += at[0], fit.u[1] += at[0] * x, fit.u[2] += at[0] * y;
-            fit.v[0] += at[1], fit.v[1] += at[1] * x, fit.v[2] += at[1] * y;
-            fit.squares += at[0] * at[0] + at[1] * at[1];
+            fl_modes_at((double)i / page.width, (double)j / page.width, mode);
+            for (int c = 0; c < 2; c++) {
+                for (int k = 0; k < FL_MODES; k++)
+                    row[k] = mode[k][c];
+                fl_least_squares_add(sum, row, (double)at[c], 1);
+                *squares += (double)(at[c] * at[c]);
+            }
+            n++;
         }
-    return fit;
+    return n;
 }
 
-/** Solves the normal equations for one component. Returns: the sum of squares that it explains. */
-static double solve(const Fit *fit, const double sums[3], double out[3])
+/** The way to a place of the page, whose width is 1, by modes. */
+static FlPoint way_to(const double p[FL_MODES], double x, double y)
 {
-    const double mx = fit->x / fit->n, my = fit->y / fit->n;
-    const double xx = fit->xx - fit->x * mx, xy = fit->xy - fit->x * my, yy = fit->yy - fit->y * my;
-    const double a = sums[1] - sums[0] * mx, b = sums[2] - sums[0] * my;
-    const double determinant = MAX(xx * yy - xy * xy, 1e-9);
-    out[1] = (a * yy - b * xy) / determinant, out[2] = (b * xx - a * xy) / determinant;
-    out[0] = sums[0] / fit->n - out[1] * mx - out[2] * my;
-    return out[0] * sums[0] + out[1] * sums[1] + out[2] * sums[2];
+    double mode[FL_MODES][2];
+    FlPoint way = {0, 0};
+    fl_modes_at(x, y, mode);
+    for (int k = 0; k < FL_MODES; k++)
+        way.x += p[k] * mode[k][0], way.y += p[k] * mode[k][1];
+    return way;
 }
 
 /** The motion as an affine map. Returns: false if it only pans, or fits badly. */
 static bool fit_motion(const float *motion, FlRect page, FlAffine *came)
 {
-    const Fit fit = add_up(motion, page);
-    const double cx = 0.5 * page.width, cy = 0.5 * page.height;
-    double u[3], v[3];
-    if (fit.n < (double)fl_rect_pixels(page) / (STRIDE * STRIDE) / 4)
+    FlLeastSquares sum = {0};
+    double p[FL_MODES], squares = 0;
+    const int n = add_motion(motion, page, &sum, &squares);
+    if (n < (int)fl_rect_pixels(page) / (4 * STRIDE * STRIDE) || !fl_least_squares_solve(&sum, p))
         return false; // of a quarter of the page at least
-    const double explained = solve(&fit, fit.u, u) + solve(&fit, fit.v, v);
-    const double most = MAX(MAX(fabs(u[1]), fabs(u[2])), MAX(fabs(v[1]), fabs(v[2])));
-    *came = (FlAffine){.xx = 1 - u[1],
-                       .yx = -v[1],
-                       .xy = -u[2],
-                       .yy = 1 - v[2],
-                       .x0 = u[1] * cx + u[2] * cy - u[0],
-                       .y0 = v[1] * cx + v[2] * cy - v[0]};
-    return most > STEADY && most < FASTEST &&
-           sqrt(MAX(fit.squares - explained, 0) / fit.n) < MISFIT;
+    for (int k = 0; k < FL_MODES; k++)
+        squares -= p[k] * sum.b[k]; // what is left
+    const FlPoint corner = way_to(p, 0, 0), right = way_to(p, 1, 0), down = way_to(p, 0, 1);
+    const double xx = (right.x - corner.x) / page.width, yx = (right.y - corner.y) / page.width;
+    const double xy = (down.x - corner.x) / page.width, yy = (down.y - corner.y) / page.width;
+    const double most = MAX(MAX(fabs(xx), fabs(yx)), MAX(fabs(xy), fabs(yy)));
+    *came = (FlAffine){1 - xx, -yx, -xy, 1 - yy, -corner.x, -corner.y};
+    return most > STEADY && most < FASTEST && sqrt(MAX(squares, 0) / n) < MISFIT;
 }
 
 bool fl_wet_follow_camera(const FlWet *wet, int before, int frame, FlAffine *came, GError **error)

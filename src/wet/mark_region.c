@@ -243,6 +243,7 @@ static bool mark_moving(const FlWetStep *step, FlMarker *marker, int before, int
                         .came = within(&step->came, planes.rect),
                         .overlap = overlap_of(&planes),
                         .laid = &wet->laid,
+                        .ink = step->painted ? NULL : wet->ink + 3 * marker->plan->region,
                         .region = marker->plan->region};
     memcpy(shape.paper, wet->paper, 3);
     const FlWetAround around = {planes.beyond, planes.touches};

@@ -252,6 +252,10 @@ static void find_ink(const FlWetShape *shape, const FlMovingEdge *before, const 
 {
     const FlLaid *laid = shape->laid;
     float sum[3] = {0}, weight = 0, ground[2];
+    if (shape->ink) {
+        memcpy(point->ink, shape->ink, sizeof point->ink);
+        return;
+    }
     fl_wet_ground(shape, point->x, point->y, ground);
     float x = point->x - point->u - ground[0], y = point->y - point->v - ground[1];
     const bool fresh = was && fl_wet_plane_at(shape->distance_before, shape->rect, x, y) < -1;

@@ -21,6 +21,7 @@ typedef struct FlWetShape {
     FlAffine came;       // the place of the paper below a cell in the frame before
     float overlap;       // share of the smaller of both masks that lies in the other
     const FlLaid *laid;  // of the frame before
+    const float *ink;    // its absorbance if that was not painted; NULL: `laid` has it
     int region;
     uint8_t paper[3];
 } FlWetShape;

@@ -45,6 +45,8 @@ FlWet *fl_wet_new(const FlShapes *shapes, const FlWetOptions *options, FlWet *be
         !(wet->lowest[1] = fl_alloc(n, sizeof(uint16_t), "regions", error)) ||
         !fl_wet_make_markers(wet, error))
         return NULL;
+    wet->ink = g_new(float, 3 * fl_drawing_regions(shapes->drawing) + 1);
+    fl_wet_take_fills(wet);
     fl_wet_begin(wet, FL_WET_FRAMES);
     return g_steal_pointer(&wet);
 }
@@ -76,7 +78,7 @@ void fl_wet_free(FlWet *wet)
     }
     g_free(wet->marker);
     g_free(wet->half_width);
-    g_free(wet->rim);
+    g_free(wet->ink);
     free(wet->lowest[0]);
     free(wet->lowest[1]);
     free(wet->layer.rgba);
@@ -184,9 +186,9 @@ static bool move_sheet(FlWet *wet, const FlAffine *came, GError **error)
     return stays || fl_wet_sheet_turn(&wet->sheet, &from, error);
 }
 
-static bool do_step(FlWet *wet, int before, int frame, GError **error)
+static bool do_step(FlWet *wet, int before, int frame, bool painted, GError **error)
 {
-    FlWetStep step = {wet, frame, (float)wet->shapes->hold, false, FL_AFFINE_NONE};
+    FlWetStep step = {wet, frame, (float)wet->shapes->hold, false, painted, FL_AFFINE_NONE};
     if (!update_lowest(wet, before, frame, error) ||
         !fl_wet_follow_camera(wet, before, frame, &step.came, error) ||
         !move_sheet(wet, &step.came, error))
@@ -212,7 +214,7 @@ static bool roll_in(FlWet *wet, int frame, GError **error)
         const int at = ((f % n) + n) % n;
         if (!is_new(wet, at))
             continue;
-        if ((before >= 0 && !do_step(wet, before, at, error)) || !fl_wet_lay_fills(wet, at, error))
+        if (before >= 0 && !do_step(wet, before, at, false, error))
             return false;
         before = at;
     }
@@ -236,7 +238,7 @@ bool fl_wet_frame(FlWet *wet, int frame, GError **error)
     const bool first = wet->at < 0;
     if ((first && !roll_in(wet, frame, error)) || (!first && !is_new(wet, frame)))
         return !first;
-    if (!do_step(wet, wet->at, frame, error))
+    if (!do_step(wet, wet->at, frame, !first, error))
         return false;
     wet->at = frame;
     return show(wet, error);

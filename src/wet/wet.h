@@ -32,9 +32,9 @@ void fl_wet_begin(FlWet *wet, int known);
  */
 bool fl_wet_frame(FlWet *wet, int frame, GError **error);
 
-/** Learns how paint in frame `frame` differs from fills, before the first call of fl_wet_frame().
- * painted: of this film or of a part; fl_wet_laid() has the paint of that frame. */
-bool fl_wet_learn(FlWet *wet, int frame, const FlWet *painted, GError **error);
+/** Learns the colours of the frames before the first one, which are not painted, before the first
+ * call of fl_wet_frame(). painted: of this film or of a part; fl_wet_laid() has a frame's paint. */
+void fl_wet_learn(FlWet *wet, const FlWet *painted);
 
 /** Goes on, at the first frame, with the paper of an earlier part of the film that has come to
  * that. */

@@ -41,8 +41,7 @@ struct FlWet {
     uint16_t *lowest[2];      // of the page, now and before: fl_surround_lowest()
     int lowest_frame;         // of lowest[0]
     FlLaid laid;
-    float *rim; // of paint near to edges, by region and channel: its absorbance over that of the
-                // fill; NULL: as fills are
+    float *ink; // of frames that are not painted: absorbance by region and channel
     FlStainLayer layer;
     int at; // the last frame; -1: before the first
 };
@@ -53,6 +52,7 @@ typedef struct FlWetStep {
     int frame;
     float frames;  // since the step before
     bool moved;    // the paper has moved
+    bool painted;  // the step before is
     FlAffine came; // the place of the paper below a cell in the frame before
 } FlWetStep;
 
@@ -91,7 +91,7 @@ int fl_wet_shown_by(const FlRegionPlan *plan, int frame);
 /** Finds the marks of region m in a frame: the work of fl_schedule_run(), data is an FlWetStep. */
 bool fl_wet_mark_one(void *data, int m, int thread, GError **error);
 
-/** Lays the fills of a frame that is not painted in wet->laid. */
-bool fl_wet_lay_fills(FlWet *wet, int frame, GError **error);
+/** Makes wet->ink that of the fills. */
+void fl_wet_take_fills(FlWet *wet);
 
 #endif
