@@ -202,14 +202,18 @@ static void values_become_those_of_svg_1(void)
         {"style='cx:5px'", "cx", "5px"},
         {"style='d:path(\"M1 2h3\")'", "d", "M1 2h3"},
         {"style='transform:translate(50%, 10px)'", "transform", "matrix(1, 0, 0, 1, 50, 10)"},
-        {"style='rotate:90deg;transform-origin:center'", "transform", "matrix(0, 1, -1, 0, 100, 0)"},
+        {"style='rotate:90deg;transform-origin:center'", "transform",
+         "matrix(0, 1, -1, 0, 100, 0)"},
         {"style='scale:2;translate:3px 4px'", "transform", "matrix(2, 0, 0, 2, 3, 4)"},
         {"style='transform:translate(0, 0) rotate(0) scale(50%)'", "transform",
          "matrix(0.5, 0, 0, 0.5, 0, 0)"},
         {"style='transform:rotateX(60deg)'", "transform", "matrix(1, 0, 0, 0.5, 0, 0)"},
-        {"style='transform:rotateY(90deg) rotateX(-90deg)'", "transform", "matrix(0, 0, -1, 0, 0, 0)"},
-        {"style='transform:perspective(4px) translateZ(2px)'", "transform", "matrix(2, 0, 0, 2, 0, 0)"},
-        {"transform='scale(2)' transform-origin='10 20'", "transform", "matrix(2, 0, 0, 2, -10, -20)"},
+        {"style='transform:rotateY(90deg) rotateX(-90deg)'", "transform",
+         "matrix(0, 0, -1, 0, 0, 0)"},
+        {"style='transform:perspective(4px) translateZ(2px)'", "transform",
+         "matrix(2, 0, 0, 2, 0, 0)"},
+        {"transform='scale(2)' transform-origin='10 20'", "transform",
+         "matrix(2, 0, 0, 2, -10, -20)"},
         {"transform='rotate(5)'", "transform", "rotate(5)"},
         {"transform='scale(2)' style='transform:none'", "transform", "matrix(1, 0, 0, 1, 0, 0)"},
         {"d='M10 10h20v40z' style='transform:scale(2);transform-box:fill-box;transform-origin:50% "
@@ -217,7 +221,7 @@ static void values_become_those_of_svg_1(void)
          "transform", "matrix(2, 0, 0, 2, -20, -30)"},
         {"style='offset-path:path(\"M0 0h100\");offset-distance:25%'", "transform",
          "matrix(1, 0, 0, 1, 25, 0)"},
-        {"d='M0 0h50' pathLength='1' stroke-dasharray='.5'", "stroke-dasharray", "25"},
+        {"d='M0 0h50' pathLength='1' stroke-dasharray='.5'", "stroke-dasharray", "25.0025"},
         {"transform='scale(4)' stroke-width='2' vector-effect='non-scaling-stroke'", "stroke-width",
          "0.5"},
         {"d='M0 0h9v9z' style='clip-path:circle(2px)'", "clip-path", "url(#fl-clip-0)"},
@@ -313,11 +317,12 @@ static void media_ask_about_a_screen(void)
     }
 }
 
-/* The same element, shown with different variables; rules match where it is written. */
+/* The same element, shown with different variables; rules match it without what is around it. */
 static void what_use_shows_has_the_variables_of_use(void)
 {
 #define SHOWN(use)                                                                                 \
-    "<style>.in .p{fill:var(--c, #111111)}</style><g class='in'><path id='p' class='p'/></g>"      \
+    "<style>.p:only-child{fill:var(--c, #111111)} .in .p,.in > .p,g + .p{fill:#999999}</style>"    \
+    "<g class='in'><g/><path id='p' class='p'/></g>"                                               \
     "<defs><use id='q' href='#p'/></defs>"                                                         \
     "<g id='a' style='--c:#222222'>" use "</g>"
     static const char *const uses[][2] = {
@@ -354,8 +359,8 @@ static void what_use_shows_has_the_variables_of_use(void)
 /** The start of a drawing in a drawing, as librsvg gets it; to be freed. */
 static char *embedded(const char *root)
 {
-    g_autofree char *content =
-        g_strdup_printf("<image id='a' width='50' height='50' href='data:image/svg+xml,%s'/>", root);
+    g_autofree char *content = g_strdup_printf(
+        "<image id='a' width='50' height='50' href='data:image/svg+xml,%s'/>", root);
     g_autofree char *href = computed(content, "a", "href", NULL);
     gsize bytes;
     g_assert_true(g_str_has_prefix(href, "data:image/svg+xml;base64,"));
@@ -418,6 +423,12 @@ static void gaps_of_librsvg_are_filled(void)
     assert_value("<g xml:lang='den'><style>:lang(de){fill:#123456}</style><path id='a'/></g>",
                  "fill", "");
     assert_value("<marker id='a' refX='center'/>", "refX", "");
+    assert_value("<path id='a' fill='rgb(1, 2, 3) /* {\"name\":\"Ink\"} */'/>", "fill",
+                 "rgb(1, 2, 3)");
+    assert_value("<filter><feOffset id='a' in='SourceAlpha'/><feColorMatrix/></filter>", "in",
+                 "fl-alpha");
+    assert_value("<filter><feOffset id='a' in='SourceAlpha'/><feFlood/></filter>", "in",
+                 "SourceAlpha");
     g_autoptr(FlSvg) svg =
         open_svg_of("<filter><feFlood/><feDropShadow dx='1' result='r'/></filter>"
                     "<linearGradient x2='0'><stop id='s' offset='.123'/><stop/></linearGradient>"

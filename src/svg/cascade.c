@@ -17,6 +17,7 @@ typedef struct Style {
     FlCssUnits units;
     const char *colour;     // computed, of `color`
     const xmlNode *context; // the <use> whose paints are context-fill and context-stroke; or NULL
+    const xmlNode *shown;   // the element that this <use> shows, as it was written
 } Style;
 
 typedef struct Cascade {
@@ -176,7 +177,8 @@ static int compare_rules(const void *a, const void *b, void *important)
                                 : (p->order > q->order) - (p->order < q->order);
 }
 
-/** The rules that match an element, FlCssRule *; those of a copy match where it was copied from. */
+/** The rules that match an element, FlCssRule *; for those of a copy, nothing is around or beside
+ * what the <use> shows. */
 static GArray *match(Cascade *c, const xmlNode *node)
 {
     GArray *matched = g_array_new(FALSE, FALSE, sizeof(const FlCssRule *));
@@ -197,9 +199,10 @@ static GArray *match(Cascade *c, const xmlNode *node)
 }
 
 /** The values that sheets and the style attribute declare; `own` keeps those of the attribute. */
-static GArray *declared_values(Cascade *c, const xmlNode *node, GArray *own)
+static GArray *declared_values(Cascade *c, const xmlNode *node, const xmlNode *shown, GArray *own)
 {
     GArray *values = g_array_new(FALSE, FALSE, sizeof(Value));
+    c->work.top = shown;
     g_autoptr(GArray) matched = match(c, node);
     for (int important = 0; important < 2; important++) {
         g_array_sort_with_data(matched, compare_rules, GINT_TO_POINTER(important));
@@ -447,20 +450,21 @@ static void compute_attributes(Cascade *c, xmlNode *node, const Style *style)
                                ? (const char *)content->content
                                : NULL;
         const size_t n = text ? strlen(text) : 0;
-        if (n == 0 || a->ns || (!strchr(text, '(') && !g_ascii_isalpha(text[n - 1])))
+        if (n == 0 || a->ns || (!strpbrk(text, "(/") && !g_ascii_isalpha(text[n - 1])))
             continue;
         const char *name = (const char *)a->name;
         const FlCssProperty *property = fl_css_property(name);
         if (!property || property->kind > FL_CSS_GEOMETRY || property->kind == FL_CSS_TEXT ||
             (property->kind == FL_CSS_PAINT && (*text == '#' || fl_is_animation(node))))
             continue; // fill="freeze"
-        g_autofree char *trimmed = g_strstrip(g_strdup(text));
+        g_autofree char *trimmed =
+            g_strstrip(strstr(text, "/*") ? fl_css_without_comments(text) : g_strdup(text));
         if (!fl_css_is_valid(property, trimmed)) {
             warn_of_value(c, property, trimmed);
             continue; // librsvg decides
         }
         g_autofree char *value = compute(c, name, property, trimmed, style);
-        if (strcmp(value, trimmed) != 0)
+        if (strcmp(value, text) != 0)
             fl_set_attribute(node, name, value);
     }
 }
@@ -530,14 +534,15 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
 {
     g_autoptr(xmlChar) written = fl_attribute(node, "style");
     g_autoptr(GArray) own = fl_css_declarations(written ? (const char *)written : "");
-    g_autoptr(GArray) values = declared_values(c, node, own);
+    g_autoptr(GArray) values = declared_values(c, node, around->shown, own);
     g_auto(FlCssEffects) effects = {0};
     g_autoptr(GPtrArray) owned = g_ptr_array_new_with_free_func(g_free);
     Style style = {.around = around,
                    .own = around->own,
                    .units = around->units,
                    .colour = around->colour,
-                   .context = around->context};
+                   .context = around->context,
+                   .shown = around->shown};
     set_variables(&style, values);
     if (fl_is(node, "svg"))
         enter_viewport(&style, node);
@@ -560,6 +565,7 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     if (copy) {
         fl_use_give_size(node, copy);
         style.context = node;
+        style.shown = copy->_private;
     }
     if (!fl_is(node, "foreignObject"))
         FL_EACH_ELEMENT (child, node)

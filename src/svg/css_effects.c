@@ -441,8 +441,8 @@ static void apply_path_length(xmlNode *node, const FlCssUnits *units)
         return;
     const double length = fl_css_outline_length(node, units);
     fl_set_attribute(node, "pathLength", NULL);
-    if (length > 0)
-        scale_stroke(node, dashes, length / wanted, units);
+    if (length > 0) // a hair more: cairo draws caps of a dash that begins at the end
+        scale_stroke(node, dashes, length / wanted * (1 + 1e-4), units);
 }
 
 /** librsvg takes the colour of a filter's light as one of the space in which the filter works. */

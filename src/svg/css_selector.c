@@ -386,8 +386,15 @@ GPtrArray *fl_selectors_parse(const char *text)
 
 /* ---- matching -------------------------------------------------------------------------------- */
 
-static const xmlNode *next_element(const xmlNode *node, bool backwards)
+static const xmlNode *element_around(const xmlNode *node, const FlSelectorWork *work)
 {
+    return node == work->top ? NULL : fl_element_around(node);
+}
+
+static const xmlNode *next_element(const xmlNode *node, bool backwards, const FlSelectorWork *work)
+{
+    if (node == work->top)
+        return NULL;
     return (backwards ? xmlPreviousElementSibling : xmlNextElementSibling)((xmlNode *)node);
 }
 
@@ -404,8 +411,8 @@ static int place_of(const Simple *simple, const xmlNode *node, FlSelectorWork *w
 {
     const bool plain = !simple->from_end && !simple->of_type && !simple->list;
     int n = 1;
-    for (const xmlNode *at = next_element(node, !simple->from_end); at;
-         at = next_element(at, !simple->from_end)) {
+    for (const xmlNode *at = next_element(node, !simple->from_end, work); at;
+         at = next_element(at, !simple->from_end, work)) {
         work->steps++;
         if (plain && at == work->sibling) {
             n += work->index;
@@ -414,7 +421,7 @@ static int place_of(const Simple *simple, const xmlNode *node, FlSelectorWork *w
         n += (!simple->of_type || xmlStrEqual(at->name, node->name)) &&
              (!simple->list || matches_any(simple->list, at, work));
     }
-    if (plain)
+    if (plain && node != work->top)
         work->sibling = node, work->index = n;
     return n;
 }
@@ -554,7 +561,8 @@ static bool matches_from(const FlSelector *selector, int i, const xmlNode *node,
         return true;
     const bool up = compound->combinator == ' ' || compound->combinator == '>';
     const bool once = compound->combinator == '>' || compound->combinator == '+';
-    for (const xmlNode *at = node; (at = up ? fl_element_around(at) : next_element(at, true));) {
+    for (const xmlNode *at = node;
+         (at = up ? element_around(at, work) : next_element(at, true, work));) {
         if (matches_from(selector, i - 1, at, work))
             return true;
         if (once)

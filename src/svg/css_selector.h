@@ -23,6 +23,7 @@ void fl_selector_free(FlSelector *selector); // NULL is fine
 
 /** The work of matching, over a whole document. */
 typedef struct FlSelectorWork {
+    const xmlNode *top;     // an element that has nothing around or beside it; or NULL
     const xmlNode *sibling; // the last element that was counted
     int index;              // its place among its siblings, from 1
     int steps;              // comparisons so far

@@ -65,6 +65,38 @@ static void mend_shadow(xmlNode *node, int number)
     fl_set_attribute(xmlNewChild(node, node->ns, (const xmlChar *)"feMergeNode", NULL), "in", in);
 }
 
+/* ---- colours of shadows ---------------------------------------------------------------------- */
+
+/** librsvg takes colours that are made from SourceAlpha in linear light for those of sRGB: a filter
+ * with such steps gets the alpha of the picture as a step of its own. */
+static void mend_alpha(xmlNode *filter)
+{
+    static const char name[] = "fl-alpha";
+    static const char *const inputs[] = {"in", "in2"};
+    static const char *const colouring[] = {"feColorMatrix", "feComponentTransfer", NULL};
+    xmlNode *first = xmlFirstElementChild(filter);
+    bool colours = false, reads = false;
+    FL_EACH_ELEMENT (step, filter)
+        colours |= fl_is_one_of(step, colouring);
+    FL_EACH_ELEMENT (step, colours ? filter : NULL)
+        for (size_t i = 0; i < G_N_ELEMENTS(inputs); i++) {
+            g_autoptr(xmlChar) in = fl_attribute(step, inputs[i]);
+            if (xmlStrEqual(in, (const xmlChar *)"SourceAlpha")) {
+                fl_set_attribute(step, inputs[i], name);
+                reads = true;
+            }
+        }
+    if (!reads)
+        return;
+    if (!xmlHasProp(first, (const xmlChar *)"in"))
+        fl_set_attribute(first, "in", "SourceGraphic");
+    xmlNode *alpha = xmlNewDocNode(filter->doc, filter->ns, (const xmlChar *)"feColorMatrix", NULL);
+    fl_set_attribute(alpha, "in", "SourceGraphic");
+    fl_set_attribute(alpha, "values", "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 1 0");
+    fl_set_attribute(alpha, "result", name);
+    xmlAddPrevSibling(first, alpha);
+}
+
 /* ---- blurs of turned shapes ------------------------------------------------------------------ */
 
 /** The element of that kind that a property of a node refers to; NULL without one. */
@@ -338,6 +370,8 @@ static void mend(Mend *m, xmlNode *node)
         mend_numbers(node);
     if (fl_is(node, "feDropShadow"))
         mend_shadow(node, m->n_made++);
+    else if (fl_is(node, "filter"))
+        mend_alpha(node);
     else if (fl_is_one_of(node, gradients))
         mend_gradient(node);
     else if (fl_is_one_of(node, with_points))
