@@ -33,8 +33,8 @@ static void numbers_lie_between(void)
         const char *expected;
     } pairs[] = {
         {"0", "10", .25, "2.5"},
-        {"M0 0h9v9z", "M10 0h-9v9z", .5, "M5 0h0v9z"},
-        {"M0,0 L1,1", "M2,2 L3,3", .5, "M1,1 L2,2"},
+        {"M0 0h9v9z m1 0h1", "M10 0H1v9z M6 2h1", .5, "M5 0H5V9ZM3.5 1H4.5"},
+        {"M1 2a5 5 0 0110 0", "M1 4A5 5 0 0 0 21 2", .5, "M1 3A5 5 0 0 1 16 2"},
         {"rotate(0deg)", "rotate(360deg)", .5, "rotate(180deg)"},
         {"#000", "#fff", .5, "rgba(128, 128, 128, 1)"},
         {"red", "rgba(0, 0, 255, 0)", .5, "rgba(255, 0, 0, 0.5)"},
@@ -85,6 +85,8 @@ static void smil_has_its_values(void)
               "x", "5");
     assert_at(RECT("<animate attributeName='x' values='0;10;0' keyTimes='0;.2;1' dur='1s'/>"), .1,
               "x", "5");
+    assert_at(RECT("<animate attributeName='x' values='0;10;0' keyTimes='0;.2;.9' dur='1s'/>"), .1,
+              "x", "1"); // wrong, and left out
     assert_at(RECT("<animate attributeName='x' values='0;10;20' calcMode='discrete' dur='3s'/>"),
               1.5, "x", "10");
     assert_at(RECT("<animate attributeName='x' values='0;2;20' calcMode='paced' dur='2s'/>"), 1,
@@ -124,7 +126,8 @@ static void smil_begins_and_ends_with_others(void)
               1.5, "x", "7.5");
     assert_at(RECT("<animate attributeName='x' from='0' to='10' dur='2s' begin='0;1'/>"), 1.5, "x",
               "2.5");
-    assert_at(RECT("<animate attributeName='x' from='1' to='9' dur='1s' max='.5s'/>"), .75, "x", "1");
+    assert_at(RECT("<animate attributeName='x' from='1' to='9' dur='1s' max='.5s'/>"), .75, "x",
+              "1");
     assert_at(RECT("<animate attributeName='rx' to='8' dur='1s'/>"), .5, "rx", "4");
     assert_at(RECT("<animate attributeName='x' from='0' to='10' dur='1s' repeatDur='1.5s' "
                    "fill='freeze'/>"),
@@ -147,6 +150,15 @@ static void smil_transforms_and_follows_paths(void)
     assert_at("<path id='p' d='M0 0h8'/><rect id='a'><animateMotion dur='2s'><mpath "
               "href='#p'/></animateMotion></rect>",
               1, "transform", "translate(4,0) rotate(0)");
+    assert_at(RECT("<animateMotion path='M0 0v4' dur='1s' repeatCount='2' accumulate='sum'/>"), 1.5,
+              "transform", "translate(0,5.9999996) rotate(0)");
+#define TWO(sum)                                                                                   \
+    RECT("<animateMotion path='M0 0h8' dur='1s' fill='freeze'/><animateMotion path='M0 0v8' "      \
+         "dur='2s' begin='1s'" sum "/><animateTransform type='scale' values='3' dur='9s' "         \
+         "attributeName='transform'/>")
+    assert_at(TWO(""), 2, "transform", "translate(0,4) rotate(0) scale(3)");
+    assert_at(TWO(" additive='sum'"), 2, "transform",
+              "translate(0,4) rotate(0) translate(7.9999992,0) rotate(0) scale(3)");
 }
 
 #define CSS(rules) "<style>" rules "</style><rect id='a' width='5' height='5'/>"
@@ -194,6 +206,17 @@ static void css_has_its_values(void)
     assert_at(CSS("@keyframes k{to{opacity:0}}@keyframes m{to{x:8px}}#a{animation:k 1s linear,m 2s "
                   "linear}"),
               1.5, "x", "6px");
+#define ADDED(rules) CSS("@keyframes k{to{" rules ";animation:k 1s;animation-composition:add}")
+    assert_at(ADDED("x:10px}}#a{animation-timing-function:linear;x:5px"), 0, "x", "5px");
+    assert_at(ADDED("x:10px}}#a{x:5px"), .999999, "x", "15px");
+    assert_at(ADDED("translate:4px 8px}}#a{translate:1px"), .999999, "transform",
+              "matrix(1, 0, 0, 1, 5, 8)");
+    assert_at(
+        CSS("@keyframes k{from{translate:2px}to{translate:4px 8px}}#a{animation:k 1s linear}"), .5,
+        "transform", "matrix(1, 0, 0, 1, 3, 4)");
+    assert_at(CSS("@keyframes k{from{filter:drop-shadow(0 0 2px #ff0000)}to{filter:drop-shadow(4px "
+                  "0 0 #0000ff) contrast(3)}}#a{animation:k 1s linear}"),
+              .5, "filter", "drop-shadow(2px 0 1px rgba(128, 0, 128, 1)) url(#fl-filter-0)");
 }
 
 static FlFilmLength length_of(const char *content)

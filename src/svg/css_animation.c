@@ -212,32 +212,69 @@ static char *one_transform(const char *value, const char *other, const char *neu
     return g_string_free(text, FALSE);
 }
 
+/** A value of translate or scale with as many numbers as another one; to be freed. */
+static char *filled_up(const char *property, const char *value, const char *other)
+{
+    g_auto(GStrv) own = fl_css_split(value, ' '), others = fl_css_split(other, ' ');
+    GString *text = g_string_new(value);
+    const bool scale = strcmp(property, "scale") == 0;
+    for (guint n = g_strv_length(own); n > 0 && n < g_strv_length(others); n++)
+        g_string_append_printf(text, " %s", scale && n < 2 ? own[0] : scale ? "1" : "0px");
+    return g_string_free(text, FALSE);
+}
+
 static char *between_transforms(const char *property, const char *from, const char *to, double q)
 {
     const char *neutral = strcmp(property, "scale") == 0 ? "1" : "0";
     g_autofree char *a = one_transform(from, to, neutral), *b = one_transform(to, from, neutral);
-    return fl_interpolate(a, b, q);
+    g_autofree char *one = filled_up(property, a, b), *other = filled_up(property, b, a);
+    return fl_interpolate(one, other, q);
 }
 
-/** A list of filter functions; for "none" those of the other one without effect. To be freed. */
-static char *one_filter(const char *value, const char *other)
+/** The i-th word of a filter function's arguments, to be freed; of one that is missing, a word that
+ * changes nothing in place of the other one. */
+static char *filter_word(const char *name, char **own, char **others, guint i)
 {
     static const char *const whole[] = {"brightness", "contrast", "opacity", "saturate", NULL};
-    if (strcmp(value, "none") != 0)
-        return g_strdup(value);
-    g_auto(GStrv) part = fl_css_split(other, ' ');
-    for (int i = 0; part[i]; i++) {
-        g_autofree char *name = NULL, *arguments = NULL, *as_it_is = part[i];
-        const bool full = fl_css_call(part[i], &name, &arguments) && g_strv_contains(whole, name);
-        part[i] = one_transform("none", as_it_is, full ? "1" : "0");
+    double number;
+    if (own && i < g_strv_length(own))
+        return g_strdup(own[i]);
+    const char *other = i < g_strv_length(others) ? others[i] : "0";
+    return g_strdup(fl_number_read(&other, &number) ? (g_strv_contains(whole, name) ? "1" : "0")
+                                                    : "transparent");
+}
+
+/** A filter function between two, of which one may be missing; NULL if they are not of a kind. */
+static char *between_functions(const char *from, const char *to, double q)
+{
+    g_autofree char *name = NULL, *name_to = NULL, *inside = NULL, *inside_to = NULL;
+    if ((from && !fl_css_call(from, &name, &inside)) ||
+        (to && !fl_css_call(to, &name_to, &inside_to)) || (from && to && strcmp(name, name_to)))
+        return NULL;
+    g_auto(GStrv) a = from ? fl_css_split(inside, ' ') : NULL;
+    g_auto(GStrv) b = to ? fl_css_split(inside_to, ' ') : NULL;
+    const char *kind = from ? name : name_to;
+    GString *out = g_string_new(kind);
+    for (guint i = 0; i < MAX(a ? g_strv_length(a) : 0, b ? g_strv_length(b) : 0); i++) {
+        g_autofree char *x = filter_word(kind, a, b, i), *y = filter_word(kind, b, a, i);
+        g_autofree char *word = fl_interpolate(x, y, q);
+        g_string_append_printf(out, "%c%s", i ? ' ' : '(', word ? word : q < .5 ? x : y);
     }
-    return g_strjoinv(" ", part);
+    return g_string_free(g_string_append_c(out, ')'), FALSE);
 }
 
 static char *between_filters(const char *from, const char *to, double q)
 {
-    g_autofree char *a = one_filter(from, to), *b = one_filter(to, from);
-    return fl_interpolate(a, b, q);
+    g_auto(GStrv) a = fl_css_split(strcmp(from, "none") == 0 ? "" : from, ' ');
+    g_auto(GStrv) b = fl_css_split(strcmp(to, "none") == 0 ? "" : to, ' ');
+    const guint n = g_strv_length(a), m = g_strv_length(b);
+    g_auto(GStrv) list = g_new0(char *, MAX(n, m) + 1);
+    for (guint i = 0; i < MAX(n, m); i++) {
+        list[i] = between_functions(i < n ? a[i] : NULL, i < m ? b[i] : NULL, q);
+        if (!list[i])
+            return NULL;
+    }
+    return list[0] ? g_strjoinv(" ", list) : NULL;
 }
 
 /** A value with its variables put in; to be freed. */
@@ -308,6 +345,22 @@ static GPtrArray *properties_of(const GArray *frames)
     return properties;
 }
 
+/** Adds the value of an animation, which is freed, to the one without it, as animation-composition
+ * wants it; to be freed. */
+static char *sum_of(const char *property, const char *base, char *value)
+{
+    const bool list = strcmp(property, "transform") == 0;
+    g_autofree char *full =
+        strcmp(property, "translate") == 0 ? filled_up(property, base, value) : g_strdup(base);
+    char *sum = list ? g_strconcat(strcmp(base, "none") == 0 ? "" : base, " ",
+                                   strcmp(value, "none") == 0 ? "" : value, NULL)
+                     : fl_add_values(full, value, 1);
+    if (!sum)
+        return value;
+    g_free(value);
+    return sum;
+}
+
 void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet *sheet,
                              double seconds, const FlCssContext *context,
                              FlCssUnderlying *underlying, FlCssTake *take, void *data,
@@ -329,18 +382,14 @@ void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet
             const char *property = properties->pdata[k], *base = underlying(data, property);
             const char *typed = g_hash_table_lookup(sheet->initial, property);
             base = *base || !typed ? base : typed;
-            const bool adds = strcmp(longhand(animations, COMPOSITION, i), "add") == 0 &&
-                              strcmp(property, "transform") == 0;
-            char *value = between(frames, property, p, longhand(animations, TIMING, i),
-                                  adds ? "none" : base, typed != NULL, context);
-            if (adds) {
-                const bool still = strcmp(value, "none") == 0;
-                char *sum = g_strconcat(strcmp(base, "none") == 0 ? "" : base, " ",
-                                        still ? "" : value, NULL);
-                g_free(value);
-                value = sum;
-            }
-            take(data, property, value);
+            const bool adds = strcmp(longhand(animations, COMPOSITION, i), "replace") != 0;
+            g_autofree char *zero = adds ? fl_add_values(base, base, -1) : NULL;
+            const char *missing = adds && strcmp(property, "transform") == 0 ? "none"
+                                  : zero                                     ? zero
+                                                                             : base;
+            char *value = between(frames, property, p, longhand(animations, TIMING, i), missing,
+                                  typed != NULL, context);
+            take(data, property, adds ? sum_of(property, base, value) : value);
         }
     }
 }

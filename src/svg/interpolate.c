@@ -1,6 +1,7 @@
 #include "svg/interpolate.h"
 
 #include "svg/css_colour.h"
+#include "svg/path_data.h"
 #include "svg/transform.h"
 #include <math.h>
 #include <string.h>
@@ -128,18 +129,15 @@ static size_t number_length(const char *s, const char *begin)
 {
     const char *end = s;
     double ignored;
-    const bool in_name = s > begin + 1 && g_ascii_isalpha(s[-1]) &&
-                         (strchr("-_", s[-2]) || (g_ascii_isalpha(s[-2]) && !strchr("zZ", s[-2])));
-    if (in_name || (s > begin && s[-1] == '#')) // path data has one letter before a number, or two
+    if (s > begin && (g_ascii_isalpha(s[-1]) || strchr("-_#", s[-1])))
         return 0;
     return fl_number_read(&end, &ignored) ? (size_t)(end - s) : 0;
 }
 
-/** The length of a unit behind a number; letters of path data are none. */
+/** The length of a unit behind a number. */
 static size_t unit_length(const char *s)
 {
-    const size_t n = *s == '%' ? 1 : strspn(s, "abcdefghijklmnopqrstuvwxyz");
-    return *s == '%' || n > 1 ? n : 0;
+    return *s == '%' ? 1 : strspn(s, "abcdefghijklmnopqrstuvwxyz");
 }
 
 /** Skips separators of numbers, which may differ: "1,2" and "1 2". */
@@ -154,6 +152,10 @@ static const char *skip_separators(const char *s)
  */
 static char *combine(const char *a, const char *b, double wa, double wb, double *distance)
 {
+    char *path = fl_path_data_combine(a, b, wa, wb);
+    *distance = 1;
+    if (path)
+        return path;
     GString *out = g_string_new(NULL);
     const char *pa = a, *pb = b;
     double sum = 0;

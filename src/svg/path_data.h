@@ -17,4 +17,11 @@ const char *fl_path_data_walk(const char *d, FlPathStep *step, void *data);
 /** Returns: NULL if d is good SVG path data (empty is), else where it goes wrong. */
 const char *fl_path_data_error(const char *d);
 
+/**
+ * wa * a + wb * b of path data, number by number, whether steps are absolute or relative; flags of
+ * arcs are set where either one is. Returns: NULL unless both are good and have the same steps; to
+ * be freed.
+ */
+char *fl_path_data_combine(const char *a, const char *b, double wa, double wb);
+
 #endif

@@ -49,16 +49,24 @@ static char **values_of(const FlAnimation *a, const char *base, bool *adds)
     return list;
 }
 
-/** The share of each value in a round: keyTimes, by distance, or even. To be freed. */
+/** The share of each value in a round: keyTimes, by distance, or even; NULL, as in a browser, if
+ * keyTimes do not fit the values. To be freed. */
 static double *key_times(const FlAnimation *a, char **values, int n, bool paced, bool discrete)
 {
     g_autofree char *text = fl_trimmed_attribute(a->node, "keyTimes");
     g_auto(GStrv) key = list_of(text);
     double *times = g_new0(double, n + 1);
-    if (text && !paced && (int)g_strv_length(key) == n) {
-        for (int i = 0; i < n; i++)
+    if (text && !paced) {
+        g_autofree char *mode = fl_trimmed_attribute(a->node, "calcMode");
+        bool good = (int)g_strv_length(key) == n;
+        for (int i = 0; i < n && good; i++) {
             times[i] = g_ascii_strtod(key[i], NULL);
-        return times;
+            good = i == 0 ? times[i] == 0 : times[i] >= times[i - 1];
+        }
+        if (good && (g_strcmp0(mode, "discrete") == 0 || times[n - 1] == 1))
+            return times;
+        g_free(times);
+        return NULL;
     }
     for (int i = 1; i < n; i++)
         times[i] = paced ? times[i - 1] + fl_value_distance(values[i - 1], values[i])
@@ -130,6 +138,8 @@ static char *value_at(const FlAnimation *a, const char *base, double seconds, bo
     const bool discrete = strcmp(mode, "discrete") == 0 || is_discrete(a->attribute);
     mode = discrete ? "discrete" : mode;
     g_autofree double *times = key_times(a, values, n, strcmp(mode, "paced") == 0, discrete);
+    if (!times)
+        return NULL;
     const double share = fl_share_of_round(a, interval, seconds, &rounds);
     const double p = place_in_round(a, times, n, share, mode, &at);
     char *value = p > 0 ? fl_interpolate(values[at], values[at + 1], p) : g_strdup(values[at]);
@@ -234,9 +244,20 @@ static double key_point(const FlAnimation *a, double share)
         return strcmp(mode, "spline") == 0 && spline_of(a, 0, control) ? fl_ease(control, share)
                                                                        : share;
     g_autofree double *times = key_times(a, points, n, false, strcmp(mode, "discrete") == 0);
+    if (!times)
+        return share;
     const double p = place_in_round(a, times, n, share, mode, &at);
     const double from = g_ascii_strtod(points[at], NULL);
     return at + 1 < n ? from + p * (g_ascii_strtod(points[at + 1], NULL) - from) : from;
+}
+
+/** The place at a share of a path, and the direction there; false: it is no path. */
+static bool place_at(const char *path, double share, FlPoint *place, double *direction)
+{
+    const FlCssUnits units = {0};
+    g_autofree char *number = fl_css_number_text(CLAMP(share, 0, 0.9999999) * 100);
+    g_autofree char *distance = g_strconcat(number, "%", NULL);
+    return fl_css_place_on_path(path, distance, &units, place, direction);
 }
 
 /** animateMotion: moves in front of the element's own transform. */
@@ -246,16 +267,16 @@ static void apply_motion(const FlTimeline *timeline, const FlAnimation *a, doubl
     g_autofree char *path = interval ? motion_path(timeline, a) : NULL;
     g_autofree char *rotate = fl_trimmed_attribute(a->node, "rotate");
     g_autoptr(xmlChar) own = fl_attribute(a->target, "transform");
-    const FlCssUnits units = {0};
+    g_autofree char *accumulate = fl_trimmed_attribute(a->node, "accumulate");
     double rounds, direction = 0;
-    FlPoint at;
+    FlPoint at, end;
     if (!path)
         return;
     const double share = key_point(a, fl_share_of_round(a, interval, seconds, &rounds));
-    g_autofree char *number = fl_css_number_text(CLAMP(share, 0, 0.9999999) * 100);
-    g_autofree char *distance = g_strconcat(number, "%", NULL);
-    if (!fl_css_place_on_path(path, distance, &units, &at, &direction))
+    if (!place_at(path, 1, &end, &direction) || !place_at(path, share, &at, &direction))
         return;
+    if (g_strcmp0(accumulate, "sum") == 0)
+        at.x += rounds * end.x, at.y += rounds * end.y;
     const bool follows = rotate && g_str_has_prefix(rotate, "auto");
     double angle = follows  ? direction + (strcmp(rotate, "auto-reverse") == 0 ? 180 : 0)
                    : rotate ? g_ascii_strtod(rotate, NULL)
@@ -286,16 +307,28 @@ static int compare_begins(const void *x, const void *y, void *seconds)
     return (p > q) - (p < q);
 }
 
-static void apply(const FlTimeline *timeline, const FlAnimation *a, double seconds)
+static void apply(const FlAnimation *a, double seconds)
 {
-    if (!a->target || !a->attribute)
+    if (!a->target || !a->attribute || fl_is(a->node, "animateMotion"))
         return;
-    if (fl_is(a->node, "animateMotion"))
-        apply_motion(timeline, a, seconds);
-    else if (fl_is(a->node, "animateTransform"))
+    if (fl_is(a->node, "animateTransform"))
         apply_transform(a, seconds);
     else
         apply_value(a, seconds);
+}
+
+/** Returns: true if an animateMotion has no effect, since a later one of its target has. */
+static bool is_replaced(const GPtrArray *order, guint i, double seconds)
+{
+    const FlAnimation *a = order->pdata[i];
+    bool replaced = false;
+    for (guint k = i + 1; k < order->len && !replaced; k++) {
+        const FlAnimation *b = order->pdata[k];
+        g_autofree char *additive = fl_trimmed_attribute(b->node, "additive");
+        replaced = b->target == a->target && fl_is(b->node, "animateMotion") &&
+                   fl_interval_at(b, seconds) && g_strcmp0(additive, "sum") != 0;
+    }
+    return replaced;
 }
 
 void fl_smil_apply(xmlDoc *doc, double seconds, FlFilmLength *length)
@@ -307,9 +340,14 @@ void fl_smil_apply(xmlDoc *doc, double seconds, FlFilmLength *length)
     // a stable sort: the order of the document decides between equals
     g_ptr_array_sort_with_data(order, compare_begins, &seconds);
     for (guint i = 0; i < order->len; i++) {
-        apply(&timeline, order->pdata[i], seconds);
+        apply(order->pdata[i], seconds);
         if (length)
             fl_animation_add_length(order->pdata[i], length);
+    }
+    for (guint i = 0; i < order->len; i++) { // in front of all transforms
+        const FlAnimation *a = order->pdata[i];
+        if (a->target && fl_is(a->node, "animateMotion") && !is_replaced(order, i, seconds))
+            apply_motion(&timeline, a, seconds);
     }
     fl_timeline_clear(&timeline);
 }
