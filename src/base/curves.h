@@ -9,7 +9,8 @@
 
 static inline float fl_clamp(float x, float low, float high)
 {
-    return x > low ? (x < high ? x : high) : low;
+    const float least = x > low ? x : low;
+    return least < high ? least : high;
 }
 
 /** A smooth step from 0 to 1. */
@@ -31,15 +32,30 @@ static inline float fl_decay(float x)
     return 1 / (1 + x * (1 + x * (.5f + x * .16f)));
 }
 
+/** The bits of a float. */
+static inline int32_t fl_bits(float x)
+{
+    int32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+/** The float of some bits. */
+static inline float fl_of_bits(int32_t bits)
+{
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
 /** exp(-x) to 1e-4 of its value for x >= 0; below 1e-9 it stays so. */
 static inline float fl_fall(float x)
 {
-    const float octaves = MIN(x * 1.44269504f, 30);
+    // bits of numbers from 0 on are in the order of the numbers, and their minimum has no branch
+    const float octaves = fl_of_bits(MIN(fl_bits(x * 1.44269504f), fl_bits(30)));
     const int whole = (int)octaves;
     const float t = (octaves - (float)whole) * 0.693147181f;
-    const uint32_t bits = (uint32_t)(127 - whole) << 23; // 2 to the power of -whole
-    float power;
-    memcpy(&power, &bits, sizeof power);
+    const float power = fl_of_bits((127 - whole) << 23); // 2 to the power of -whole
     return power * (1 - t * (1 - t * (0.5f - t * (0.166667f - t * (0.0416667f - t * 0.0083333f)))));
 }
 

@@ -1,5 +1,6 @@
 #define ROWS(name) name##_c
 #define ROWS_NAME "c"
+#define ROWS_FLAGS 0
 #include "base/row_kernels.inc"
 
 #include "config.h"

@@ -97,6 +97,7 @@ typedef struct FlRowKernels {
     void (*multiply)(const uint16_t *factor, uint8_t *values, int n);
 
     const char *name; // "c", "avx2", …
+    unsigned flags;   // of the instruction set that it needs
 } FlRowKernels;
 
 /** The fastest version that flags allow; a pure function of them. */
@@ -104,6 +105,40 @@ const FlRowKernels *fl_row_kernels_for(unsigned flags);
 
 /** The version for this processor. */
 const FlRowKernels *fl_row_kernels(void);
+
+/**
+ * Defines the function `name`: an inline function `of` as compiled for this processor, which has
+ * the same parameters, in parentheses, and whose arguments are their names, in parentheses. It is
+ * for loops over pixels that belong to one file.
+ */
+#ifdef __x86_64__
+#define FL_FOR_EACH_CPU(name, of, parameters, arguments)                                           \
+    __attribute__((target("avx512bw,avx512vl,avx512dq"),                                           \
+                   flatten)) static void name##_avx512 parameters                                  \
+    {                                                                                              \
+        of arguments;                                                                              \
+    }                                                                                              \
+    __attribute__((target("avx2"), flatten)) static void name##_avx2 parameters                    \
+    {                                                                                              \
+        of arguments;                                                                              \
+    }                                                                                              \
+    static void name parameters                                                                    \
+    {                                                                                              \
+        const unsigned flags = fl_row_kernels()->flags;                                            \
+        if (flags & FL_CPU_AVX512)                                                                 \
+            name##_avx512 arguments;                                                               \
+        else if (flags & FL_CPU_AVX2)                                                              \
+            name##_avx2 arguments;                                                                 \
+        else                                                                                       \
+            of arguments;                                                                          \
+    }
+#else
+#define FL_FOR_EACH_CPU(name, of, parameters, arguments)                                           \
+    static void name parameters                                                                    \
+    {                                                                                              \
+        of arguments;                                                                              \
+    }
+#endif
 
 extern const FlRowKernels fl_row_kernels_c, fl_row_kernels_avx2, fl_row_kernels_avx512;
 

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/curves.h"
+#include "base/row_kernels.h"
 #include <math.h>
 #include <string.h>
 
@@ -375,8 +376,9 @@ static void read_grain(const FlWetSheet *sheet, int x, int y, FlColumns columns,
 
 /** A front is as sharp as the px: it ends where its edge is 0. A stain breaks up towards its sides
  * with the paper's grain, but not where a front is still wet. */
-static void shine_through(const FlWetSheet *sheet, FlColumns columns, const LayerRows *rows)
+static inline void shine_in_columns(const FlWetSheet *on, FlColumns columns, const LayerRows *rows)
 {
+    const FlWetSheet own = *on, *sheet = &own; // apart from what is written
     float *const *m = rows->px;
     const float cell_px = (float)sheet->cell_px;
     const float soft = 0.3f * FRAYED_PX * sheet->px * cell_px;
@@ -405,6 +407,10 @@ static void shine_through(const FlWetSheet *sheet, FlColumns columns, const Laye
         rows->through[2][x] = fl_fall(dense * m[INK + 2][x]);
     }
 }
+
+FL_FOR_EACH_CPU(shine_through, shine_in_columns,
+                (const FlWetSheet *sheet, FlColumns columns, const LayerRows *rows),
+                (sheet, columns, rows))
 
 /** The light that marks let through, as straight RGBA over the paper. Returns: true if any is
  * missing. */
