@@ -87,7 +87,11 @@ class Page:
     def choose(self, section="defaults", key="carry", value="0.5"):
         """Words with which it is refused; "" if it is not."""
         self.say("choose", section, key, value)
-        return self.until(lambda m: isinstance(m, dict) and {"refused", "chosen"} & set(m)).get("refused", "")
+        self.say("choose", "end", "end", "")  # is refused as well
+        words = ""
+        while (message := self.until(lambda m: isinstance(m, dict) and "refused" in m))["key"] != "end":
+            words = message["refused"]
+        return words
 
 
 def leave(connections):
@@ -133,7 +137,7 @@ if "flood" in sys.argv:
     tell("a page has pictures after more connections than descriptors", page.draft(generation) == 0)
     status = drop("bad.json")[0]
     page.say("paint", page.state()["generation"], 1, 0, 0, "")
-    words = page.until(lambda m: "reverted" in m)["reverted"]
+    words = page.until(lambda m: "refused" in m)["refused"]
     tell("an animation without frames is refused with its words", status == 200 and words == "no player")
     status = drop("good.lottie")[0]
     page.say("paint", page.state()["generation"], 1, 0, 0, "")
@@ -178,6 +182,12 @@ tell("none of them changed the config", states[0]["config"].count("=") == 2)
 pages[0].say("choose", "defaults", "tint", "#123456")
 generation = pages[1].state()["generation"]
 tell("a choice of one is drafted for both", all(page.draft(generation) >= 0 for page in pages))
+pages[0].say("step", -1)
+state = pages[1].state()
+tell("what one has chosen is taken back for both", "tint" not in state["config"] and state["undo"] is None and
+     state["redo"] == "defaults: tint")
+pages[1].say("step", 1)
+tell("and made again", "tint = #123456" in pages[1].state()["config"])
 pages[0].connection.close()
 pages[1].say("choose", "defaults", "tint", "")
 tell("one that is left goes on", pages[1].draft(pages[1].state()["generation"]) >= 0)

@@ -56,7 +56,7 @@ def config():
     return browser.ask('byId("config").textContent')
 
 
-REFINED = ("live.sent.length === 0 && frames.length && "
+REFINED = ("live.sent === 0 && frames.length && "
            "frames.every((f) => f.generation === live.generation && f.level === REFINED)")
 DRAWN = "frames.filter((f) => f.images.after && f.images.map).length === 6"
 
@@ -89,8 +89,6 @@ slider = control("carry", "input[type=range]")
 tell("a click on a slider chooses", slide(slider, 0.3, f'live.settings["{section}"]'))
 tell("what it shows", 0.2 < browser.ask(f'Number(live.settings["{section}"].carry)') < 0.4)
 tell("its end as well", slide(slider, 0.99, f'live.settings["{section}"].carry === "1"'))
-tell("and beside its thumb there", slide(slider, 0.86, f'live.settings["{section}"].carry > 0.5 && '
-                                         f'live.settings["{section}"].carry < 1'))
 browser.ask(control("tint", "select") + ".focus()")
 browser.key("ArrowDown")
 browser.key("ArrowDown")

@@ -12,7 +12,8 @@ struct FlLiveConfig {
     const FlArgs *args;
     char *path;
     char *base;         // the file with the options of the command line
-    GPtrArray *choices; // "section\nkey\nvalue", in the order in which they were made
+    GPtrArray *choices; // GStrv: section, key and value, in the order in which they were made
+    guint n;            // of them, which hold; those after them were taken back
     guint kept;         // of them, which are known to be good
     char *text;         // base with the choices
 };
@@ -203,18 +204,14 @@ static bool read_base(FlLiveConfig *config, GError **error)
     return true;
 }
 
-static void apply(FlLiveConfig *config, const char *choice)
-{
-    g_auto(GStrv) part = g_strsplit(choice, "\n", 3);
-    set(&config->text, part[0], part[1], part[2]);
-}
-
 static void apply_choices(FlLiveConfig *config)
 {
     g_free(config->text);
     config->text = g_strdup(config->base);
-    for (guint k = 0; k < config->choices->len; k++)
-        apply(config, config->choices->pdata[k]);
+    for (guint k = 0; k < config->n; k++) {
+        char **part = config->choices->pdata[k];
+        set(&config->text, part[0], part[1], part[2]);
+    }
 }
 
 FlLiveConfig *fl_live_config_new(const FlArgs *args, GError **error)
@@ -222,7 +219,7 @@ FlLiveConfig *fl_live_config_new(const FlArgs *args, GError **error)
     g_autoptr(FlLiveConfig) config = g_new0(FlLiveConfig, 1);
     config->args = args;
     config->path = path_of(config);
-    config->choices = g_ptr_array_new_with_free_func(g_free);
+    config->choices = g_ptr_array_new_with_free_func((GDestroyNotify)g_strfreev);
     return fl_live_config_reload(config, error) ? g_steal_pointer(&config) : NULL;
 }
 
@@ -266,15 +263,31 @@ static bool is_section(const char *section)
 
 void fl_live_config_keep(FlLiveConfig *config)
 {
-    config->kept = config->choices->len;
+    config->kept = config->n;
 }
 
 bool fl_live_config_revert(FlLiveConfig *config)
 {
-    const bool changes = config->choices->len > config->kept;
-    g_ptr_array_set_size(config->choices, (int)config->kept);
+    const bool changes = config->n > config->kept;
+    if (changes)
+        g_ptr_array_set_size(config->choices, (int)(config->n = config->kept));
     apply_choices(config);
     return changes;
+}
+
+char **fl_live_config_choice(const FlLiveConfig *config, int by)
+{
+    const guint k = by < 0 ? config->n - 1 : config->n; // of no choice: the largest number
+    return k < config->choices->len ? config->choices->pdata[k] : NULL;
+}
+
+bool fl_live_config_step(FlLiveConfig *config, int by)
+{
+    const bool can = fl_live_config_choice(config, by);
+    if (can)
+        config->n = by < 0 ? config->n - 1 : config->n + 1;
+    apply_choices(config);
+    return can;
 }
 
 /* Checks the value without the drawing. */
@@ -297,9 +310,12 @@ bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char
     }
     if (!check_value(option, value, error))
         return false;
-    char *choice = g_strdup_printf("%s\n%s\n%s", section, key, value);
-    g_ptr_array_add(config->choices, choice);
-    apply(config, choice);
+    const char *const choice[] = {section, key, value, NULL};
+    g_ptr_array_set_size(config->choices, (int)config->n);
+    g_ptr_array_add(config->choices, g_strdupv((char **)choice));
+    config->kept = MIN(config->kept, config->n);
+    config->n++;
+    set(&config->text, section, key, value);
     return true;
 }
 

@@ -18,7 +18,8 @@ bool fl_live_config_reload(FlLiveConfig *config, GError **error);
 
 /**
  * Makes a choice: the value of an option in "project", "defaults" or "region NAME"; "" removes the
- * value. Returns: false with FL_ERROR_USAGE, which names the expected values.
+ * value. Choices that were taken back are dropped. Returns: false with FL_ERROR_USAGE, which names
+ * the expected values.
  */
 bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char *key,
                            const char *value, GError **error);
@@ -36,8 +37,15 @@ bool fl_live_config_save(const FlLiveConfig *config, bool replace, GError **erro
 /** The choices so far are good ones. */
 void fl_live_config_keep(FlLiveConfig *config);
 
-/** Takes back the choices since fl_live_config_keep(). Returns: true if there are any. */
+/** Drops the choices since fl_live_config_keep(). Returns: true if there are any. */
 bool fl_live_config_revert(FlLiveConfig *config);
+
+/** The last choice that holds, by -1, or the next one that was taken back, by 1: section, key and
+ * value. Borrowed; NULL: none. */
+char **fl_live_config_choice(const FlLiveConfig *config, int by);
+
+/** Takes that choice back, or makes it again. Returns: false if there is none. */
+bool fl_live_config_step(FlLiveConfig *config, int by);
 
 /** The available choices: {"controls":{"options":[…],"styles":[…]}}. To be freed. */
 char *fl_live_config_options(void);

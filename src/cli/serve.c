@@ -60,25 +60,26 @@ static void say_to_all(const char *json, void *data)
         say_to(live->pages->pdata[k], json);
 }
 
-/* {"KIND":"TEXT"}, to be freed. */
-static char *object_of(const char *kind, const char *text)
+/* {"KIND":"TEXT","key":"KEY"}, to be freed. key: of the choice that it is about, or NULL. */
+static char *object_of(const char *kind, const char *text, const char *key)
 {
     GString *json = g_string_new("{");
     fl_json_text(json, kind, text);
+    fl_json_text(json, "key", key);
     g_string_append_c(json, '}');
     return g_string_free(json, FALSE);
 }
 
 static void answer_page(SoupWebsocketConnection *page, const char *kind, const char *text)
 {
-    g_autofree char *json = object_of(kind, text);
+    g_autofree char *json = object_of(kind, text, NULL);
     say_to(page, json);
 }
 
 /* To all pages, and to those that come before the settings change. */
 static void tell(Live *live, const char *kind, const char *text)
 {
-    char *json = object_of(kind, text);
+    char *json = object_of(kind, text, NULL);
     say_to_all(json, live);
     g_ptr_array_add(live->messages, json);
     if (live->messages->len > MOST_MESSAGES)
@@ -104,6 +105,13 @@ static void append_command(GString *json, const Live *live)
     fl_json_text(json, "command", line->str);
 }
 
+/* A choice that a button would take back or make again. */
+static void append_choice(GString *json, const char *name, char **choice)
+{
+    g_autofree char *words = choice ? g_strdup_printf("%s: %s", choice[0], choice[1]) : NULL;
+    fl_json_text(json, name, words);
+}
+
 /* All that the page shows besides the film and its pictures; to be freed. */
 static char *state_of(const Live *live)
 {
@@ -112,6 +120,8 @@ static char *state_of(const Live *live)
     fl_json_number(json, "generation", live->generation, true);
     fl_json_text(json, "config", fl_live_config_text(live->config));
     fl_json_text(json, "file", name);
+    append_choice(json, "undo", fl_live_config_choice(live->config, -1));
+    append_choice(json, "redo", fl_live_config_choice(live->config, 1));
     append_command(json, live);
     g_string_append(json, ",\"messages\":[");
     for (guint k = 0; k < live->messages->len; k++)
@@ -143,25 +153,27 @@ static void free_drop(FlLiveDrop *drop, const FlLiveDrop *others)
 }
 
 /* Takes back all that was chosen or dropped since the last draft. */
-static bool take_back(Live *live)
+static bool take_back(Live *live, const char *words)
 {
-    const bool dropped = live->last != live->drop, chosen = fl_live_config_revert(live->config);
+    const bool dropped = live->last != live->drop;
+    char **choice = dropped ? NULL : fl_live_config_choice(live->config, -1);
+    g_autofree char *refused = object_of("refused", words, choice ? choice[1] : NULL);
+    const bool chosen = fl_live_config_revert(live->config);
     free_drop(live->drop, live->last);
     live->drop = live->last;
-    if (dropped || chosen)
+    if (dropped || chosen) {
         paint_anew(live, dropped);
+        say_to_all(refused, live);
+    }
     return dropped || chosen;
 }
 
 /* The page of a sample that fails no longer waits for it. */
 static void on_failed(Live *live, const FlLiveJob *job)
 {
-    g_autofree char *reverted = object_of("reverted", job->error->message);
     if (job->work == FL_LIVE_SAMPLE)
         answer_page(job->asker, "lost", "a sample");
-    else if (job->work == FL_LIVE_DRAFT && take_back(live))
-        say_to_all(reverted, live);
-    else
+    else if (job->work != FL_LIVE_DRAFT || !take_back(live, job->error->message))
         tell(live, "error", job->error->message);
 }
 
@@ -255,7 +267,17 @@ static void take_choice(Live *live, SoupWebsocketConnection *page, char **part)
     const bool chosen = fl_live_config_choose(live->config, part[1], part[2], part[3], &error);
     if (chosen)
         paint_anew(live, false);
-    answer_page(page, chosen ? "chosen" : "refused", chosen ? part[2] : error->message);
+    answer_page(page, "taken", part[2]);
+    g_autofree char *refused = chosen ? NULL : object_of("refused", error->message, part[2]);
+    if (refused)
+        say_to(page, refused);
+}
+
+/* step, BY: -1 takes a choice back, 1 makes it again. */
+static void take_step(Live *live, SoupWebsocketConnection *page, char **part)
+{
+    if (fl_live_config_step(live->config, number_of(part[1], -1, 1)))
+        paint_anew(live, false);
 }
 
 /* save, REPLACE: "1": a file that is there already as well. */
@@ -283,7 +305,10 @@ static void on_text(SoupWebsocketConnection *page, int type, GBytes *message, vo
         const char *name;
         guint parts;
         void (*take)(Live *live, SoupWebsocketConnection *page, char **part);
-    } known[] = {{"paint", 6, take_paint}, {"choose", 4, take_choice}, {"save", 2, take_save}};
+    } known[] = {{"paint", 6, take_paint},
+                 {"choose", 4, take_choice},
+                 {"step", 2, take_step},
+                 {"save", 2, take_save}};
     gsize bytes;
     const char *letters = g_bytes_get_data(message, &bytes);
     g_autofree char *text = g_strndup(letters ? letters : "", bytes);
@@ -293,7 +318,7 @@ static void on_text(SoupWebsocketConnection *page, int type, GBytes *message, vo
             known[k].take(data, page, part);
             return;
         }
-    answer_page(page, "refused", "expected paint, choose or save, and a line for each value");
+    answer_page(page, "refused", "expected paint, choose, step or save, and a line for each value");
 }
 
 static void on_closed(SoupWebsocketConnection *page, void *data)
