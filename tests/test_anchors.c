@@ -86,6 +86,20 @@ static void an_outline_that_turns_turns_its_anchor(void)
     assert_film(folder, 2, 0, 12);
 }
 
+/* A limb that is drawn as one line. */
+static void a_line_that_turns_turns_its_anchor(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < N; t++) {
+        g_autofree char *line = g_strdup_printf(
+            "<path d=\"M25,40H75\" fill=\"none\" stroke=\"red\" stroke-width=\"12\" "
+            "transform=\"rotate(%d 50 40)\"/>",
+            10 * t);
+        add_frame(folder, t, line);
+    }
+    assert_film(folder, 0, 0, 10);
+}
+
 static void a_group_turns_about_its_centre(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -214,6 +228,7 @@ int main(int argc, char **argv)
     TEST("a-shape-that-slides-past-the-page-moves-all-the-same",
          a_shape_that_slides_past_the_page_moves_all_the_same);
     TEST("an-outline-that-turns-turns-its-anchor", an_outline_that_turns_turns_its_anchor);
+    TEST("a-line-that-turns-turns-its-anchor", a_line_that_turns_turns_its_anchor);
     TEST("a-group-turns-about-its-centre", a_group_turns_about_its_centre);
     TEST("other-nodes-are-no-turn", other_nodes_are_no_turn);
     TEST("a-leaf-that-goes-takes-nothing-along", a_leaf_that_goes_takes_nothing_along);

@@ -28,17 +28,25 @@ static void add_side(Outline *outline, FlPoint from, FlPoint to)
     outline->square[2] += cross * (a.x * a.y + b.x * b.y + (a.x * b.y + a.y * b.x) / 2);
 }
 
-static void add_node(Outline *outline, FlPoint p)
+static void reach(Outline *outline, FlPoint p)
 {
     FlPoint *least = &outline->least, *most = &outline->most;
     const bool first = outline->nodes->len == 0;
     *least = first ? p : (FlPoint){fmin(least->x, p.x), fmin(least->y, p.y)};
     *most = first ? p : (FlPoint){fmax(most->x, p.x), fmax(most->y, p.y)};
+}
+
+static void add_node(Outline *outline, FlPoint p)
+{
+    reach(outline, p);
     g_array_append_val(outline->nodes, p);
 }
 
-static void add_subpath(Outline *outline, const FlCubic *cubic, int n, const FlAffine *ctm)
+/* The end of an open one is a node as well: a line has two. */
+static void add_subpath(Outline *outline, const FlSubpath *subpath, const FlCubic *cubic,
+                        const FlAffine *ctm)
 {
+    const int n = subpath->n;
     FlPoint start = {0, 0}, last = {0, 0};
     for (int c = 0; c < n; c++) {
         const FlPoint p = fl_affine_apply(ctm, cubic[c].p[0]);
@@ -48,6 +56,8 @@ static void add_subpath(Outline *outline, const FlCubic *cubic, int n, const FlA
         add_side(outline, last, p);
         const FlPoint third = fl_cubic_at(&cubic[c], ctm, 1 / 3.0);
         last = fl_cubic_at(&cubic[c], ctm, 2 / 3.0);
+        reach(outline, third);
+        reach(outline, last);
         add_side(outline, p, third);
         add_side(outline, third, last);
     }
@@ -55,6 +65,8 @@ static void add_subpath(Outline *outline, const FlCubic *cubic, int n, const FlA
         const FlPoint end = fl_affine_apply(ctm, cubic[n - 1].p[3]);
         add_side(outline, last, end);
         add_side(outline, end, start);
+        if (!subpath->closed)
+            add_node(outline, end);
     }
 }
 
@@ -68,8 +80,8 @@ static Outline outline_of(const FlOutlines *outlines, int leaf)
         if (!g->usable || (leaf < 0 && g->unit != -1 - leaf))
             continue;
         for (int s = g->first_subpath; s < g->first_subpath + g->n_subpaths; s++)
-            add_subpath(&outline, outlines->cubic + outlines->subpath[s].first,
-                        outlines->subpath[s].n, &g->ctm);
+            add_subpath(&outline, &outlines->subpath[s],
+                        outlines->cubic + outlines->subpath[s].first, &g->ctm);
     }
     return outline;
 }
