@@ -390,6 +390,31 @@ static void a_limb_carries_its_own(void)
     g_assert_cmpfloat(correlation(a, b, n), >, .7);
 }
 
+/* The loops that a line encloses cancel, so that its middle says little of where it is. */
+static void all_of_a_limb_has_its_wash(void)
+{
+    g_auto(GStrv) frames = g_new0(char *, 3);
+    for (int t = 0; t < 2; t++)
+        frames[t] =
+            g_strdup_printf("<g fill='#5bb7d8' stroke='#5bb7d8'><path fill='none' stroke-width='40'"
+                            " d='M30 150L130 90L230 150L310 200L380 150'/>"
+                            "<rect stroke='none' x='%d' y='220' width='60' height='60'/></g>",
+                            20 + 20 * t);
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = open_film_by(FL_KEY_FILL, folder, (const char *const *)frames);
+    FlLimb limb[FL_LIMBS];
+    g_assert_cmpint(fl_drawing_limbs(drawing, 0, 1, limb), ==, 2);
+    const FlWashStyle hues = {.wash = 1, .hue = 1};
+    g_autofree Tones *tones = lay_frame(drawing, 1, &hues);
+    int least = 127, most = -128;
+    for (int x = 300; x < 340; x++) {
+        least = MIN(least, tones->play[190 * W + x]);
+        most = MAX(most, tones->play[190 * W + x]);
+    }
+    g_test_message("play from %d to %d", least, most);
+    g_assert_cmpint(most, >, least + 4);
+}
+
 static void still_figures_do_not_change(void)
 {
     const char *const still = BLOB " id='still' transform='translate(120 150)'/>";
@@ -888,6 +913,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/paint-that-moves-is-dark-behind", paint_that_moves_is_dark_behind);
     g_test_add_func("/wash/it-rides-with-its-figure", it_rides_with_its_figure);
     g_test_add_func("/wash/a-limb-carries-its-own", a_limb_carries_its_own);
+    g_test_add_func("/wash/all-of-a-limb-has-its-wash", all_of_a_limb_has_its_wash);
     g_test_add_func("/wash/still-figures-do-not-change", still_figures_do_not_change);
     g_test_add_func("/wash/touching-shapes-of-one-fill-are-one-wash",
                     touching_shapes_of_one_fill_are_one_wash);

@@ -60,7 +60,8 @@ void fl_field_centre(const FlWashField *field, const float *all, const float *sh
 void fl_field_fill_masks(const FlWashField *field, const FlWashes *washes, int w,
                          const FlDrawList *draws);
 
-/** Divides the points of a region among its limbs, by their distance. */
+/** Divides the points of a wash among its parts: the weights become shares, 0..1, of which limbs
+ * have the more the nearer they are. A lone part keeps its coverage. */
 void fl_field_divide(const FlWashField *field);
 
 /** Finds FlWashField.light_at. */

@@ -265,16 +265,12 @@ static void add_values(const FlWashField *field, const float *weight, size_t at,
     }
 }
 
-/* Makes weights shares of one, without those that are next to nothing. */
-static void share_weights(const FlWashField *field)
+/* Leaves out parts that have next to nothing of a point. */
+static void drop_least(const FlWashField *field)
 {
-    for (size_t i = 0; i < fl_wash_points(field->wash); i++) {
-        float all = 1e-6f;
-        for (int k = 0; k < field->n_parts; k++)
-            all += field->part[k].weight[i];
-        for (int k = 0; k < field->n_parts; k++)
-            field->part[k].weight[i] = MAX(field->part[k].weight[i] / all - LEAST_SHARE, 0);
-    }
+    for (int k = 0; k < field->n_parts; k++)
+        for (size_t i = 0; i < fl_wash_points(field->wash); i++)
+            field->part[k].weight[i] = MAX(field->part[k].weight[i] - LEAST_SHARE, 0);
 }
 
 void fl_field_fill_noise(const FlWashField *field)
@@ -288,7 +284,7 @@ void fl_field_fill_noise(const FlWashField *field)
     for (size_t i = 0; i < fl_wash_points(wash); i++)
         near[i] = near[i] > 1e-4f ? near[i] : 0;
     if (field->n_parts > 1)
-        share_weights(field);
+        drop_least(field);
     for (int k = 0; k < field->n_parts; k++)
         for (int y = 0; y < wash->height; y++)
             for (int x = 0; x < wash->width; x += FL_NOISE_ROW) {

@@ -208,24 +208,33 @@ void fl_field_fill_masks(const FlWashField *field, const FlWashes *washes, int w
         fl_field_blur(field, field->part[k].weight, FL_WASH_JOINT_PX);
 }
 
-/* The parts of a region that a point of it belongs to: limbs by how far it is from each, by the
- * limb's own spread. */
-void fl_field_divide(const FlWashField *field)
+/* Parts that touch count by how far a point is from each limb, by the limb's own spread. */
+static void weigh_limb(const FlWashField *field, const FlLimb *limb, float *weight)
 {
     const FlWash *wash = field->wash;
-    const float room =
-        FL_WASH_JOINT_PX * field->input->paper_px * FL_WASH_JOINT_PX * field->input->paper_px / 4;
-    for (int k = 0; k < field->n_parts; k++) {
-        const FlLimb *limb = field->part[k].limb;
-        for (int y = 0; limb && y < wash->height; y++)
-            for (int x = 0; x < wash->width; x++) {
-                const float dx = (float)(wash->box.x + x * wash->step) - limb->x;
-                const float dy = (float)(wash->box.y + y * wash->step) - limb->y;
-                const float xx = limb->spread[0] + room, yy = limb->spread[1] + room;
-                const float xy = limb->spread[2], area = xx * yy - xy * xy;
-                const float far = .25f * (yy * dx * dx - 2 * xy * dx * dy + xx * dy * dy) / area;
-                field->part[k].weight[y * wash->width + x] /= 1e-3f + far * far * far * far * far;
-            }
+    const float joint = FL_WASH_JOINT_PX * field->input->paper_px, room = joint * joint / 4;
+    const float xx = limb->spread[0] + room, yy = limb->spread[1] + room;
+    const float xy = limb->spread[2], area = xx * yy - xy * xy;
+    for (int y = 0; y < wash->height; y++)
+        for (int x = 0; x < wash->width; x++) {
+            const float dx = (float)(wash->box.x + x * wash->step) - limb->x;
+            const float dy = (float)(wash->box.y + y * wash->step) - limb->y;
+            const float far = .25f * (yy * dx * dx - 2 * xy * dx * dy + xx * dy * dy) / area;
+            weight[y * wash->width + x] /= 1e-3f + far * far * far * far * far;
+        }
+}
+
+void fl_field_divide(const FlWashField *field)
+{
+    for (int k = 0; k < field->n_parts; k++)
+        if (field->part[k].limb)
+            weigh_limb(field, field->part[k].limb, field->part[k].weight);
+    for (size_t i = 0; field->n_parts > 1 && i < fl_wash_points(field->wash); i++) {
+        float all = 0;
+        for (int k = 0; k < field->n_parts; k++)
+            all += field->part[k].weight[i];
+        for (int k = 0; all > 0 && k < field->n_parts; k++)
+            field->part[k].weight[i] /= all; // tiny where all limbs are far
     }
 }
 
