@@ -11,14 +11,12 @@ static const float least_gradient = 0.25f; // below it a gradient has no directi
 
 /** The parts of the shape, and where each was and will be. */
 typedef struct Traces {
-    FlConnectedParts parts;
     FlTrace *before, *after; // by part number
     uint32_t *fixed;         // number of pixels of the part that have a velocity
 } Traces;
 
 static void traces_clear(Traces *traces)
 {
-    fl_connected_parts_clear(&traces->parts);
     g_free(traces->before);
     g_free(traces->after);
     g_free(traces->fixed);
@@ -29,18 +27,14 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Traces, traces_clear)
 static bool traces_init(Traces *traces, const FlOutline *now, const FlOutline *before,
                         const FlOutline *after, float limit_px, GError **error)
 {
+    const size_t n = (size_t)now->parts.n_parts + 1;
     *traces = (Traces){0};
-    FlConnectedParts *parts = &traces->parts;
-    if (!fl_connected_parts_init(parts, now->coverage, now->box.width, now->box.height, FL_INSIDE,
-                                 255, error))
-        return false;
-    const size_t n = (size_t)parts->n_parts + 1;
     if (!(traces->before = fl_alloc(n, sizeof *traces->before, "a flow", error)) ||
         !(traces->after = fl_alloc(n, sizeof *traces->after, "a flow", error)) ||
         !(traces->fixed = fl_alloc(n, sizeof *traces->fixed, "a flow", error)))
         return false;
-    return fl_part_tracking_find(now, parts, before, limit_px, traces->before, error) &&
-           fl_part_tracking_find(now, parts, after, limit_px, traces->after, error);
+    return fl_part_tracking_find(now, before, limit_px, traces->before, error) &&
+           fl_part_tracking_find(now, after, limit_px, traces->after, error);
 }
 
 static float length(const float v[2])
@@ -95,7 +89,7 @@ static void fix_velocities(const FlFlowFrame *now, const FlFlowFrame *before,
     for (int y = 0; y < box->height; y++)
         for (int x = 0; x < box->width; x++) {
             const size_t p = y * (size_t)box->width + x;
-            const int part = traces->parts.part[p];
+            const int part = now->outline->parts.part[p];
             cell[p] = part > 0 ? FL_CELL_FREE : FL_CELL_OUTSIDE;
             if (part > 0 &&
                 find_velocity(now, before, after, &traces->before[part], &traces->after[part],
@@ -120,7 +114,7 @@ bool fl_flow_construct(const FlFlowFrame *now, const FlFlowFrame *before, const 
     fix_velocities(now, before, after, limit_px, &traces, cell, flow);
     *moves = false;
     for (size_t p = 0; p < n; p++) {
-        const int part = traces.parts.part[p];
+        const int part = now->outline->parts.part[p];
         if (part > 0 && traces.fixed[part] == 0)
             cell[p] = FL_CELL_FIXED; // a part without any velocity stays at rest
         *moves |= flow[2 * p] != 0.0f || flow[2 * p + 1] != 0.0f;

@@ -28,6 +28,9 @@ FlOutline *fl_outline_new(const uint8_t *mask, int frame_width, int frame_height
     outline->empty = !any_inside(outline->coverage, fl_rect_pixels(*box));
     if (outline->empty)
         return g_steal_pointer(&outline);
+    if (!fl_connected_parts_init(&outline->parts, outline->coverage, box->width, box->height,
+                                 FL_INSIDE, 255, error))
+        return NULL;
     outline->distance =
         fl_alloc_unset((size_t)frame_width * frame_height, sizeof(float), "a distance", error);
     if (!outline->distance ||
@@ -48,6 +51,7 @@ void fl_outline_unref(FlOutline *outline)
     if (!outline || !g_atomic_int_dec_and_test(&outline->references))
         return;
     g_free(outline->coverage);
+    fl_connected_parts_clear(&outline->parts);
     g_free(outline->distance);
     g_free(outline->normal);
     g_free(outline);

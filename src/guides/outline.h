@@ -2,8 +2,7 @@
 #ifndef FLUIDY_GUIDES_OUTLINE_H
 #define FLUIDY_GUIDES_OUTLINE_H
 
-#include "base/rect.h"
-
+#include "guides/connected_parts.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -13,11 +12,12 @@
 typedef struct FlOutline {
     int references;
     int frame_width, frame_height;
-    bool empty;        // no pixel is inside; box may still hold faint ones
-    FlRect box;        // of all pixels with coverage
-    uint8_t *coverage; // of the box
-    float *distance;   // of the frame, fl_distance(); NULL if empty
-    float *normal;     // of the box, fl_outline_normals(); NULL until then
+    bool empty;             // no pixel is inside; box may still hold faint ones
+    FlRect box;             // of all pixels with coverage
+    uint8_t *coverage;      // of the box
+    FlConnectedParts parts; // of the box's pixels that are inside; none if empty
+    float *distance;        // of the frame, fl_distance(); NULL if empty
+    float *normal;          // of the box, fl_outline_normals(); NULL until then
 } FlOutline;
 
 /** Of a region in two frames, borrowed; NULL where they are not known. */

@@ -2,7 +2,6 @@
 #ifndef FLUIDY_GUIDES_PART_TRACKING_H
 #define FLUIDY_GUIDES_PART_TRACKING_H
 
-#include "guides/connected_parts.h"
 #include "guides/outline.h"
 
 typedef enum FlTraceKind {
@@ -14,7 +13,8 @@ typedef enum FlTraceKind {
 /** The relation of one part of a frame's shape to another frame. */
 typedef struct FlTrace {
     FlTraceKind kind;
-    float offset[2]; // of a jump: from the other frame's part to this one; px
+    float offset[2]; // of its centre, from the part that it jumps from or that it overlaps, if they
+                     // are alike in size, px
 } FlTrace;
 
 /**
@@ -22,11 +22,11 @@ typedef struct FlTrace {
  * the other frame overlaps is taken to come from the nearest part there that no pixel of `now`
  * overlaps, if that is between half and twice its size, and its centre at most limit_px away.
  *
- * parts are those of now; trace is an array of n_parts + 1 by part number.
+ * trace is an array of now->parts.n_parts + 1 by part number.
  *
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */
-bool fl_part_tracking_find(const FlOutline *now, const FlConnectedParts *parts,
-                           const FlOutline *other, float limit_px, FlTrace *trace, GError **error);
+bool fl_part_tracking_find(const FlOutline *now, const FlOutline *other, float limit_px,
+                           FlTrace *trace, GError **error);
 
 #endif

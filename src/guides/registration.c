@@ -15,7 +15,6 @@
 #define SOFT_PX 3.0       // distances beyond it count less
 #define FIRM 0.002        // ridge of translation and rotation: what cannot be seen stays 0
 #define STIFF 0.06        // of scale and shears
-#define UNSEEN 0.01       // of the largest eigenvalue: a mode that the outline does not show
 #define NOISE_PX 0.05     // mean distance that counts as no motion
 #define BLUR_PX 0.7f      // of the distances before they are matched
 #define LEAST_POINTS 12   // of a contour
@@ -31,9 +30,8 @@ typedef struct Point {
 
 typedef struct Work {
     int width, height;
-    FlOutline *before, *now;              // borrowed
-    FlConnectedParts parts, parts_before; // the latter made when first needed
-    FlRect *part_box;                     // in the frame, by part
+    FlOutline *before, *now; // borrowed
+    FlRect *part_box;        // in the frame, by part
     FlTrace *trace;
     float *smooth; // the blurred distance before
     float *flow;   // of the masks, made when first needed
@@ -42,8 +40,6 @@ typedef struct Work {
 
 static void work_clear(Work *w)
 {
-    fl_connected_parts_clear(&w->parts);
-    fl_connected_parts_clear(&w->parts_before);
     g_free(w->part_box);
     g_free(w->trace);
     g_free(w->smooth);
@@ -55,7 +51,7 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Work, work_clear)
 static int part_at(const Work *w, int x, int y)
 {
     const FlRect box = w->now->box;
-    return w->parts.part[(size_t)(y - box.y) * box.width + (x - box.x)];
+    return w->now->parts.part[(size_t)(y - box.y) * box.width + (x - box.x)];
 }
 
 /** Bilinear distance before at a place, and its gradient. */
@@ -78,12 +74,11 @@ static GPtrArray *find_points(const Work *w)
 {
     const FlRect box = w->now->box;
     GPtrArray *all = g_ptr_array_new_with_free_func((GDestroyNotify)g_array_unref);
-    for (int part = 0; part <= w->parts.n_parts; part++)
+    for (int part = 0; part <= w->now->parts.n_parts; part++)
         g_ptr_array_add(all, g_array_new(FALSE, FALSE, sizeof(Point)));
     for (int y = 0; y < box.height; y++)
         for (int x = 0; x < box.width; x++) {
-            const int part = w->parts.part[(size_t)y * box.width + x], px = box.x + x,
-                      py = box.y + y;
+            const int px = box.x + x, py = box.y + y, part = part_at(w, px, py);
             float g[2];
             if (part == 0 || !fl_outline_is_contour(w->now, px, py))
                 continue;
@@ -129,43 +124,6 @@ static void move(const Map *map, double x, double y, double u[2], double mode[FL
         u[0] += map->p[k] * mode[k][0], u[1] += map->p[k] * mode[k][1];
 }
 
-/** One Jacobi rotation of a symmetric 3x3 matrix, its vectors being the columns of v. */
-static void rotate(double a[3][3], double v[3][3], int i, int j)
-{
-    if (a[i][j] == 0)
-        return;
-    const double theta = (a[j][j] - a[i][i]) / (2 * a[i][j]);
-    const double t = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
-    const double c = 1 / sqrt(t * t + 1), s = t * c;
-    for (int k = 0; k < 3; k++) {
-        const double p = a[k][i], q = a[k][j];
-        a[k][i] = c * p - s * q, a[k][j] = s * p + c * q;
-    }
-    for (int k = 0; k < 3; k++) {
-        const double p = a[i][k], q = a[j][k];
-        a[i][k] = c * p - s * q, a[j][k] = s * p + c * q;
-        const double e = v[k][i], f = v[k][j];
-        v[k][i] = c * e - s * f, v[k][j] = s * e + c * f;
-    }
-}
-
-/** Holds what the outline does not show of translation and rotation. */
-static void hold_unseen(FlLeastSquares *sum)
-{
-    double a[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, largest = 0, trace = 0;
-    for (int i = 0; i < 3; i++)
-        memcpy(a[i], sum->a[i], sizeof a[i]);
-    for (int sweep = 0; sweep < 8; sweep++)
-        rotate(a, v, 0, 1), rotate(a, v, 0, 2), rotate(a, v, 1, 2);
-    for (int k = 0; k < 3; k++)
-        largest = MAX(largest, a[k][k]), trace += a[k][k];
-    for (int k = 0; k < 3; k++)
-        if (a[k][k] < UNSEEN * largest)
-            for (int i = 0; i < 3; i++)
-                for (int j = 0; j < 3; j++)
-                    sum->a[i][j] += 1e4 * trace * v[i][k] * v[j][k];
-}
-
 /** The mean distance that is left; sets those of the points. */
 static double measure(const Work *w, const Map *map, GArray *points)
 {
@@ -196,7 +154,6 @@ static bool improve(const Work *w, Map *map, const GArray *points, double *step)
         }
         fl_least_squares_add(&sum, row, value, 1 / (1 + d * d / (SOFT_PX * SOFT_PX)));
     }
-    hold_unseen(&sum);
     for (int k = 0; k < FL_MODES; k++)
         fl_least_squares_ridge(&sum, k, points->len * (k < 3 ? FIRM : STIFF));
     double p[FL_MODES];
@@ -217,53 +174,6 @@ static double search(const Work *w, Map *map, GArray *points)
         if (!improve(w, map, points, &step))
             return HUGE_VAL;
     return measure(w, map, points);
-}
-
-/** Centre and area of all parts of the frame before that a part overlaps. */
-static bool centre_before(const Work *w, int part, double c[3])
-{
-    const FlConnectedParts *before = &w->parts_before;
-    const FlRect other = w->before->box, both = fl_rect_and(w->part_box[part], other);
-    g_autofree bool *below = g_new0(bool, before->n_parts + 1);
-    for (int y = both.y; y < both.y + both.height; y++)
-        for (int x = both.x; x < both.x + both.width; x++)
-            if (part_at(w, x, y) == part)
-                below[before->part[(size_t)(y - other.y) * other.width + (x - other.x)]] = true;
-    c[0] = c[1] = c[2] = 0;
-    for (int y = 0; y < other.height; y++)
-        for (int x = 0; x < other.width; x++) {
-            const int p = before->part[(size_t)y * other.width + x];
-            if (p > 0 && below[p])
-                c[0] += other.x + x, c[1] += other.y + y, c[2] += 1;
-        }
-    c[0] /= MAX(c[2], 1), c[1] /= MAX(c[2], 1);
-    return c[2] > 0;
-}
-
-static void centre_now(const Work *w, int part, double c[3])
-{
-    const FlRect box = w->part_box[part];
-    c[0] = c[1] = c[2] = 0;
-    for (int y = box.y; y < box.y + box.height; y++)
-        for (int x = box.x; x < box.x + box.width; x++)
-            if (part_at(w, x, y) == part)
-                c[0] += x, c[1] += y, c[2] += 1;
-    c[0] /= MAX(c[2], 1), c[1] /= MAX(c[2], 1);
-}
-
-/** A start for parts that moved far: the difference of the centres. */
-static bool far_start(Work *w, int part, Map *map, GError **error)
-{
-    const FlRect box = w->before->box;
-    double a[3], b[3];
-    if (!w->parts_before.part &&
-        !fl_connected_parts_init(&w->parts_before, w->before->coverage, box.width, box.height,
-                                 FL_INSIDE, 255, error))
-        return false;
-    centre_now(w, part, b);
-    if (centre_before(w, part, a) && a[2] < 2 * b[2] && b[2] < 2 * a[2])
-        map->p[0] = b[0] - a[0], map->p[1] = b[1] - a[1];
-    return true;
 }
 
 /** Fixes what is left of the normal motion on the contour, and diffuses it over the part. */
@@ -340,12 +250,19 @@ static bool fill_flow(Work *w, int part, GError **error)
     return true;
 }
 
+/** A part that has come as its centre has. */
+static Map start_of(const Work *w, int part, const GArray *points)
+{
+    Map map = map_of(points);
+    map.p[0] = (double)w->trace[part].offset[0], map.p[1] = (double)w->trace[part].offset[1];
+    return map;
+}
+
 /** A part that is nowhere over its past: it has come from there only if it looks the same. A speck
  * looks like any other, so that its motion is unknown. */
 static bool register_jump(const Work *w, int part, GArray *points, GError **error)
 {
-    Map map = map_of(points);
-    map.p[0] = w->trace[part].offset[0], map.p[1] = w->trace[part].offset[1];
+    Map map = start_of(w, part, points);
     if (points->len >= LEAST_POINTS && search(w, &map, points) <= ALIKE * map.size)
         return fill_part(w, part, &map, points, error);
     leave_unknown(w, part);
@@ -366,15 +283,11 @@ static bool register_part(Work *w, int part, GArray *points, GError **error)
     const double start = measure(w, &map, points);
     if (start < NOISE_PX)
         return true;
-    Map far = map;
-    if (!far_start(w, part, &far, error))
-        return false;
+    Map far = start_of(w, part, points);
     double left = search(w, &map, points);
-    if (far.p[0] != 0 || far.p[1] != 0) {
-        const double other = search(w, &far, points);
-        if (other < left)
-            left = other, map = far;
-    }
+    const double other = search(w, &far, points);
+    if (other < left)
+        left = other, map = far;
     return left <= start / 2 ? fill_part(w, part, &map, points, error) : fill_flow(w, part, error);
 }
 
@@ -406,14 +319,13 @@ static bool prepare(Work *w, GError **error)
         return false;
     memcpy(w->smooth, w->before->distance, n * sizeof(float));
     const float limit = LIMIT_SHARE * (float)MAX(w->width, w->height);
-    if (!fl_blur(w->smooth, w->width, w->height, BLUR_PX, error) ||
-        !fl_connected_parts_init(&w->parts, w->now->coverage, w->now->box.width, w->now->box.height,
-                                 FL_INSIDE, 255, error))
+    if (!fl_blur(w->smooth, w->width, w->height, BLUR_PX, error))
         return false;
-    w->part_box = g_new(FlRect, w->parts.n_parts + 1);
-    fl_boxes_of_labels(w->parts.part, w->now->box, w->parts.n_parts, w->part_box);
-    w->trace = g_new0(FlTrace, w->parts.n_parts + 1);
-    return fl_part_tracking_find(w->now, &w->parts, w->before, limit, w->trace, error);
+    const FlConnectedParts *parts = &w->now->parts;
+    w->part_box = g_new(FlRect, parts->n_parts + 1);
+    fl_boxes_of_labels(parts->part, w->now->box, parts->n_parts, w->part_box);
+    w->trace = g_new0(FlTrace, parts->n_parts + 1);
+    return fl_part_tracking_find(w->now, w->before, limit, w->trace, error);
 }
 
 bool fl_registration(FlOutline *before, FlOutline *now, float *motion, GError **error)
@@ -426,7 +338,7 @@ bool fl_registration(FlOutline *before, FlOutline *now, float *motion, GError **
     if (!prepare(&w, error))
         return false;
     g_autoptr(GPtrArray) points = find_points(&w);
-    for (int part = 1; part <= w.parts.n_parts; part++)
+    for (int part = 1; part <= now->parts.n_parts; part++)
         if (!register_part(&w, part, g_ptr_array_index(points, part), error))
             return false;
     fill_rim(&w);
