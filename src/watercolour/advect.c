@@ -1,14 +1,14 @@
 /* Advection of water with its pigment, by donor cells, which conserve pigment. */
 #include "watercolour/stages.h"
 
-void fl_find_concentration(FlSheet *sheet, const float *g, float share)
+void fl_find_concentration(FlSheet *sheet, const float *g)
 {
     const size_t cells = (size_t)sheet->width * sheet->height;
     const float *s = sheet->s;
     float *c = sheet->concentration;
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < cells; i++)
-        c[i] = s[i] > FL_DRY ? share * g[i] / s[i] : 0;
+        c[i] = s[i] > FL_DRY ? g[i] / s[i] : 0;
 }
 
 /* Water that passes a face has the concentration of its donor cell. */
@@ -45,10 +45,10 @@ static void carry_water(FlSheet *sheet)
     }
 }
 
-void fl_advect(FlSheet *sheet, float share)
+void fl_advect(FlSheet *sheet)
 {
-    for (int k = 0; share > 0 && k < sheet->n_pigments; k++) {
-        fl_find_concentration(sheet, sheet->floating[k], share);
+    for (int k = 0; k < sheet->n_pigments; k++) {
+        fl_find_concentration(sheet, sheet->floating[k]);
         carry_pigment(sheet, sheet->floating[k]);
     }
     carry_water(sheet);

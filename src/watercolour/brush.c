@@ -184,7 +184,6 @@ static void pour(FlSheet *sheet, const Moment *now)
         const float missing = event->water * sheet->capacity[i] * taken[i] - sheet->s[i];
         const float given = fmaxf(0, missing) * event->rate * cover[i];
         sheet->s[i] += given;
-        sheet->p[i] += event->pressure * cover[i];
         for (int k = 0; k < sheet->n_pigments; k++)
             sheet->floating[k][i] += given * touch->load * touch->play[k] * event->load[k];
         if (event->water > 0 && cover[i] > 0.5f)
@@ -220,7 +219,7 @@ static inline float sweep_speed(const Moment *now, FlTouch a, FlTouch b, float d
     return now->speed * (0.7f + 0.5f * open) * decline * edge * middle * slope;
 }
 
-/* Adds the velocity of the growing puddle to that of the water. */
+/* Adds the velocity of a growing puddle. */
 static void sweep(FlSheet *sheet, const Moment *now)
 {
     const int width = sheet->width;
@@ -247,8 +246,7 @@ static void still_water(FlSheet *sheet)
 void fl_brush_apply(const FlBrush *brush, FlSheet *sheet, float before, float after)
 {
     const float scale = (float)brush->recipe->oversample;
-    if (!brush->recipe->flow.shallow) // only the growth of puddles moves the water
-        still_water(sheet);
+    still_water(sheet);
     for (int e = 0; e < brush->recipe->n_events; e++) {
         const FlEvent *event = &brush->recipe->events[e];
         const bool starts = event->from >= before && event->from < after;

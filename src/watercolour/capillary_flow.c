@@ -4,21 +4,11 @@
  * Beyond the paper: faces differ in permeability, so that fibres and patches shape the front; the
  * flow may grow with a power of the saturation, which gives a porous medium's sharp wetting front
  * instead of a diffuse one; a dry cell resists until its neighbour holds enough (pinning, [MX05]);
- * and the water carries its pigment, without which paint never follows a front for long: the
- * paper's velocity is free of divergence inside M and so cannot carry anything out to a rim.
+ * and the water carries its pigment, without which paint never follows a front for long.
  */
 #include "watercolour/stages.h"
 
 #include <math.h>
-
-static void soak(FlSheet *sheet, float alpha)
-{
-    const size_t cells = (size_t)sheet->width * sheet->height;
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < cells; i++)
-        if (sheet->wet[i])
-            sheet->s[i] += fmaxf(0, fminf(alpha, sheet->capacity[i] - sheet->s[i]));
-}
 
 /* The mobility of a cell's water, 0..1/4: its saturation to a power. Four neighbours that take a
  * quarter each cannot empty the cell. */
@@ -31,7 +21,7 @@ static void find_mobility(const FlSheet *sheet, const FlFlow *flow, float *mobil
         float m = 0.25f * flow->conduct;
         for (int n = 0; n < flow->mobility; n++)
             m *= saturation;
-        mobility[i] = sheet->s[i] > flow->epsilon ? m : 0;
+        mobility[i] = m;
     }
 }
 
@@ -42,7 +32,7 @@ typedef struct Sides {
 
 /* Fluxes from a to b of n faces. The receiving side must have spare capacity, and resists while it
    is dry. No branches, so that it vectorises. */
-static void row_fluxes(Sides x, int n, float sigma, float delta, float *restrict flux)
+static void row_fluxes(Sides x, int n, float sigma, float *restrict flux)
 {
     for (int i = 0; i < n; i++) {
         const float sa = x.sa[i], sb = x.sb[i];
@@ -52,7 +42,7 @@ static void row_fluxes(Sides x, int n, float sigma, float delta, float *restrict
         const float hold = low < FL_DRY ? sigma * (forth ? x.pin_b[i] : x.pin_a[i]) : 0;
         const float want = (forth ? x.ma[i] : x.mb[i]) * x.open[i] * (high - low);
         const float least = want < spare ? want : spare;
-        const float q = least > 0 && high > hold && low >= delta ? least : 0;
+        const float q = least > 0 && high > hold ? least : 0;
         flux[i] = forth ? q : -q;
     }
 }
@@ -67,12 +57,12 @@ static void find_fluxes(FlSheet *sheet, const FlFlow *flow)
         const size_t at = (size_t)j * width, face = (size_t)j * (width + 1) + 1, up = at - width;
         const Sides u = {s + at,       s + at + 1, c + at,     c + at + 1,          pin + at,
                          pin + at + 1, m + at,     m + at + 1, sheet->open_u + face};
-        row_fluxes(u, width - 1, flow->sigma, flow->delta, sheet->flux_u + face);
+        row_fluxes(u, width - 1, flow->sigma, sheet->flux_u + face);
         if (j == 0)
             continue;
         const Sides v = {
             s + up, s + at, c + up, c + at, pin + up, pin + at, m + up, m + at, sheet->open_v + at};
-        row_fluxes(v, width, flow->sigma, flow->delta, sheet->flux_v + at);
+        row_fluxes(v, width, flow->sigma, sheet->flux_v + at);
     }
 }
 
@@ -87,9 +77,7 @@ static void wet_surface(FlSheet *sheet, float sigma)
 
 void fl_capillary_flow(FlSheet *sheet, const FlFlow *flow)
 {
-    if (flow->absorb > 0)
-        soak(sheet, flow->absorb);
     find_fluxes(sheet, flow);
-    fl_advect(sheet, flow->carry);
+    fl_advect(sheet);
     wet_surface(sheet, flow->sigma);
 }

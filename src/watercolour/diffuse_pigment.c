@@ -29,11 +29,11 @@ static void diffuse(FlSheet *sheet, float *grid, float rate)
     }
 }
 
-void fl_diffuse_pigment(FlSheet *sheet, const FlPigment *pigments, const FlFlow *flow)
+void fl_diffuse_pigment(FlSheet *sheet, const FlPigment *pigments)
 {
     for (int k = 0; k < sheet->n_pigments; k++)
-        for (int i = 0; i < flow->diffusions && pigments[k].diffusion > 0; i++) {
-            fl_find_concentration(sheet, sheet->floating[k], 1);
+        if (pigments[k].diffusion > 0) {
+            fl_find_concentration(sheet, sheet->floating[k]);
             diffuse(sheet, sheet->floating[k], pigments[k].diffusion);
         }
 }

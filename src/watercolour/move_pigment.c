@@ -1,5 +1,5 @@
 /*
- * Pigment in the shallow water [C97 §4.4].
+ * Pigment in growing puddles [C97 §4.4].
  *
  * The printed version lacks dt in the transfer and has wrong signs in its last line; this form
  * conserves pigment to rounding and keeps it >= 0.

@@ -40,20 +40,7 @@ static FlRecipe *defaults(void)
                   .patch_px = 40,
                   .pinning = 0.3f,
                   .shading = 0.03f},
-        .flow = {.viscosity = 0.1f,
-                 .drag = 0.01f,
-                 .slope = 1,
-                 .relaxation = 0.1f,
-                 .tolerance = 0.01f,
-                 .sweeps = 50,
-                 .delta = -0.01f,
-                 .sigma = 0.1f,
-                 .diffusions = 1,
-                 .conduct = 1,
-                 .mobility = 1,
-                 .carry = 1,
-                 .settle = 0.2f,
-                 .thickness = 2.5f},
+        .flow = {.sigma = 0.1f, .conduct = 1, .mobility = 1, .settle = 0.2f, .thickness = 2.5f},
         .dust = {.speed_px = 1.5f,
                  .scatter = 0.5f,
                  .swirl = 0.5f,
@@ -121,25 +108,10 @@ static const FlTableKey paper_keys[] = {
 };
 
 static const FlTableKey flow_keys[] = {
-    {"shallow-water", FL_KEY_OF(SWITCH, FlFlow, shallow)},
-    {"viscosity", FL_KEY_OF(NUMBER, FlFlow, viscosity), 0, 0.24},
-    {"drag", FL_KEY_OF(NUMBER, FlFlow, drag), 0, 1},
-    {"slope", FL_KEY_OF(NUMBER, FlFlow, slope), 0, 10},
-    {"relaxation", FL_KEY_OF(NUMBER, FlFlow, relaxation), 0, 0.24},
-    {"tolerance", FL_KEY_OF(NUMBER, FlFlow, tolerance), 0, 1},
-    {"sweeps", FL_KEY_OF(INTEGER, FlFlow, sweeps), 0, 1000},
-    {"edge-darkening", FL_KEY_OF(NUMBER, FlFlow, edge_darkening), 0, 1},
-    {"absorb", FL_KEY_OF(NUMBER, FlFlow, absorb), 0, 1},
-    {"epsilon", FL_KEY_OF(NUMBER, FlFlow, epsilon), 0, 1},
-    {"delta", FL_KEY_OF(NUMBER, FlFlow, delta), -1, 1},
     {"sigma", FL_KEY_OF(NUMBER, FlFlow, sigma), 0, 1},
-    {"diffusions", FL_KEY_OF(INTEGER, FlFlow, diffusions), 0, 100},
     {"conduct", FL_KEY_OF(NUMBER, FlFlow, conduct), 0, 1},
     {"mobility", FL_KEY_OF(INTEGER, FlFlow, mobility), 0, 4},
-    {"carry", FL_KEY_OF(NUMBER, FlFlow, carry), 0, 1},
     {"settle", FL_KEY_OF(NUMBER, FlFlow, settle), 0, 10},
-    {"evaporation", FL_KEY_OF(NUMBER, FlFlow, evaporation), 0, 1},
-    {"rim-evaporation", FL_KEY_OF(NUMBER, FlFlow, rim_evaporation), 0, 1},
     {"thickness", FL_KEY_OF(NUMBER, FlFlow, thickness), 0, 100},
 };
 
@@ -188,7 +160,6 @@ static const FlTableKey event_keys[] = {
     {"bristle-size", FL_KEY_OF(NUMBER, FlEvent, bristle_px), 0.5, 1000, 2, 2},
     {"dry", FL_KEY_OF(NUMBER, FlEvent, dry), 0, 1, 2, 2},
     {"dry-depth", FL_KEY_OF(NUMBER, FlEvent, dry_px), 0.5, 1000},
-    {"pressure", FL_KEY_OF(NUMBER, FlEvent, pressure), 0, 10},
 };
 
 #define TABLE(keys)                                                                                \

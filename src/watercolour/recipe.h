@@ -51,23 +51,15 @@ typedef struct FlEvent {
     float bristle_px[2];  // width and length of such a line
     float dry[2], dry_px; // height of the tooth below which the brush skips, 0..1: at the rim of
                           // the puddle, and from that depth on
-    float pressure;       // added to that of the shallow water per step
 } FlEvent;
 
 /** Constants of the layers [C97 §4]; rates are per step. See the files of the stages. */
 typedef struct FlFlow {
-    bool shallow; // true if the shallow-water layer moves
-    float viscosity, drag, slope, relaxation, tolerance;
-    int sweeps;
-    float edge_darkening;                // eta
-    float absorb, epsilon, delta, sigma; // capillary: alpha, epsilon, delta, sigma
-    int diffusions;                      // diffusion passes per step
-    float conduct;                       // share of the largest stable capillary flow, 0..1
-    int mobility;                        // power of the saturation in the capillary flow, 0..4
-    float carry;  // share of its pigment that water in the paper carries, 0..1
-    float settle; // factor on transfer_pigment's rates
-    float evaporation, rim_evaporation; // water lost per step; at the rim, per dry side
-    float thickness;                    // display scale of the pigment
+    float sigma;     // saturation from which the surface of the paper is wet
+    float conduct;   // share of the largest stable capillary flow, 0..1
+    int mobility;    // power of the saturation in the capillary flow, 0..4
+    float settle;    // factor on transfer_pigment's rates
+    float thickness; // display scale of the pigment
 } FlFlow;
 
 /** Dust that crumbles off a dry stroke; see dust.c. */

@@ -8,7 +8,7 @@ FlSheet *fl_sheet_new(int width, int height, int n_pigments, GError **error)
     sheet->width = width, sheet->height = height, sheet->n_pigments = n_pigments;
     const size_t cells = (size_t)width * height;
     const size_t faces = (size_t)(width + 1) * (height + 1);
-    float **grids[] = {&sheet->relief, &sheet->capacity, &sheet->pin, &sheet->p, &sheet->s};
+    float **grids[] = {&sheet->relief, &sheet->capacity, &sheet->pin, &sheet->s};
     float **staggered[] = {&sheet->open_u,   &sheet->open_v,   &sheet->u,
                            &sheet->v,        &sheet->flux_u,   &sheet->flux_v,
                            &sheet->spare[0], &sheet->spare[1], &sheet->spare[2]};
@@ -35,10 +35,10 @@ void fl_sheet_free(FlSheet *sheet)
 {
     if (!sheet)
         return;
-    float *grids[] = {sheet->relief,   sheet->capacity, sheet->pin,    sheet->open_u,
-                      sheet->open_v,   sheet->u,        sheet->v,      sheet->p,
-                      sheet->s,        sheet->flux_u,   sheet->flux_v, sheet->spare[0],
-                      sheet->spare[1], sheet->spare[2]};
+    float *grids[] = {sheet->relief,  sheet->capacity, sheet->pin,      sheet->open_u,
+                      sheet->open_v,  sheet->u,        sheet->v,        sheet->s,
+                      sheet->flux_u,  sheet->flux_v,   sheet->spare[0], sheet->spare[1],
+                      sheet->spare[2]};
     for (size_t i = 0; i < G_N_ELEMENTS(grids); i++)
         free(grids[i]);
     for (int k = 0; k < sheet->n_pigments; k++) {

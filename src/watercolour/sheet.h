@@ -1,4 +1,4 @@
-/* The sheet of paper: the three layers of [C97 §4] as grids. */
+/* The sheet of paper: the layers of [C97 §4] as grids. */
 #ifndef FLUIDY_WATERCOLOUR_SHEET_H
 #define FLUIDY_WATERCOLOUR_SHEET_H
 
@@ -21,8 +21,7 @@ typedef struct FlSheet {
     float *pin;                       // resistance of a dry cell to wetting, 1 on average
     float *open_u, *open_v;           // permeability of the faces, 0..1
     uint8_t *wet;                     // M, 0 or 1
-    float *u, *v;                     // velocity of the shallow water, cells per step
-    float *p;                         // its pressure
+    float *u, *v;                     // velocity of growing puddles, cells per step
     float *s;                         // water in the paper
     float *floating[FL_MAX_PIGMENTS]; // g
     float *settled[FL_MAX_PIGMENTS];  // d

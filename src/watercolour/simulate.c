@@ -17,16 +17,10 @@
 /* One step [C97 §4.2]. */
 static void step(FlSheet *sheet, const FlRecipe *recipe)
 {
-    if (recipe->flow.shallow) {
-        fl_update_velocities(sheet, &recipe->flow);
-        fl_relax_divergence(sheet, &recipe->flow);
-        fl_flow_outward(sheet, &recipe->flow);
-    }
     fl_move_pigment(sheet);
-    fl_diffuse_pigment(sheet, recipe->pigments, &recipe->flow);
+    fl_diffuse_pigment(sheet, recipe->pigments);
     fl_transfer_pigment(sheet, recipe->pigments, &recipe->flow);
     fl_capillary_flow(sheet, &recipe->flow);
-    fl_evaporate(sheet, &recipe->flow);
 }
 
 /* The number of steps before a frame (0 is the first), as of a time-lapse camera that slows down.
@@ -195,14 +189,11 @@ double fl_recipe_seconds(const FlRecipe *recipe, int size)
  * takes a cell some 6 ns, a fibre a px some 20 ns, and a try to place a grain 50 ns an event. */
 static double most_seconds(const FlRecipe *recipe, int size)
 {
-    enum { ITERATIONS = 50, TRIES = 1000 }; // of velocities in a step; of a grain
-    const FlFlow *flow = &recipe->flow;
+    enum { TRIES = 1000 }; // to place a grain
     const double pixels = (double)recipe->width * recipe->height, cells = recipe->oversample;
-    const double iterations = (double)flow->diffusions * recipe->n_pigments +
-                              (flow->shallow ? ITERATIONS + flow->sweeps : 0);
     const double fibres = recipe->paper.fibres * pixels / 100;
     return fl_recipe_seconds(recipe, size) +
-           steps_of(recipe) * pixels * cells * cells * iterations * 6e-9 +
+           steps_of(recipe) * pixels * cells * cells * recipe->n_pigments * 6e-9 +
            fibres * recipe->paper.fibre_px * cells * cells * cells * 2e-8 +
            (double)recipe->dust.grains * TRIES * recipe->n_events * 5e-8;
 }
