@@ -35,10 +35,10 @@ static int dry_amount(int amount, int32_t more)
 #define HEAVY_ONE 64
 
 /* The share by which paint granulates, of HEAVY_ONE: of its two pigments the second one is heavy,
- * and the first one stains. */
+ * and the first one stains, so that grain lies in patches. */
 static int heavy_at(const int8_t *play, int x)
 {
-    return play ? CLAMP(30 + play[x] * 5 / 8, 6, 72) : HEAVY_ONE;
+    return play ? CLAMP(18 + play[x] * 3 / 4, 4, 54) : HEAVY_ONE;
 }
 
 void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t *amounts,
@@ -49,7 +49,7 @@ void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t 
     if (!tooth.height || granulation == 0)
         return;
     fill_strengths(granulation, strength);
-    const int32_t apart = (int32_t)lrintf(granulation * 5000); // of 65536: plays by height
+    const int32_t apart = (int32_t)lrintf(granulation * 3500); // of 65536: plays by height
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < box.height; y++) {
         const FlColumns span = fl_area_row(area, y);

@@ -90,17 +90,20 @@ static inline float ragged_at(const Brush *brush, float px, float py)
     return (a + (b - a) * down) / RAGGED_ONE;
 }
 
-/* Water carries paint to the place where it stops: a line, sharp towards the flooded side, from
- * which ragged tongues run on the way that the water went. */
-static inline float front_at(float away, float strength, float ragged)
+/* Water carries paint to the place where it stops: a thin line, sharp towards the flooded side,
+ * from which fine tongues run on the way that the water went. */
+static inline float front_at(const Brush *brush, const Slow slow, float ragged)
 {
+    const float away = slow[FL_WASH_FRONT], strength = slow[FL_WASH_FRONTS];
     if (strength <= 0 || away < -12 || away > 60)
         return 0;
     const float past = away + 3 * ragged;
     if (past < 0)
         return strength * fl_decay(-past * .7f);
-    const float tongue = 4 + 30 * MAX(ragged + .1f, 0);
-    return strength * (.5f * fl_smooth(1 - past / tongue) + .5f * fl_decay(past * .08f));
+    const float fine = ragged_at(brush, 2.3f * slow[FL_WASH_X], 2.3f * slow[FL_WASH_Y]);
+    const float tongue = 4 + 32 * MAX(fine + .2f, 0);
+    return strength * (.5f * fl_smooth(1 - past / tongue) + .2f * fl_decay(past * .08f) +
+                       .4f * fl_decay(past * .6f));
 }
 
 /* From -.5 on the side that water flooded to .5 beyond its front. */
@@ -122,7 +125,8 @@ static inline float load_at(const Brush *brush, const Slow slow, float ragged)
     const float *load = brush->load + ((int)whole & (LOADS - 1));
     const float along = wash->along[0] * slow[FL_WASH_X] + wash->along[1] * slow[FL_WASH_Y];
     const float hairs = ragged_at(brush, slow[FL_WASH_PASS] * wash->brush_px, .08f * along);
-    return slow[FL_WASH_LINES] * (load[0] + (load[1] - load[0]) * next + .6f * dry * hairs);
+    return slow[FL_WASH_LINES] *
+           (load[0] + (load[1] - load[0]) * next + (.14f + .5f * dry) * hairs);
 }
 
 /* The ln of the factor on the amount by a wash of strength 1, and the balance of the pigments, at a
@@ -135,13 +139,13 @@ static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
     const float lines = slow[FL_WASH_LINES], strength = slow[FL_WASH_FRONTS];
     const float ragged = ragged_at(brush, slow[FL_WASH_X], slow[FL_WASH_Y]);
     const float load = style->passes * load_at(brush, slow, ragged);
-    const float front = front_at(slow[FL_WASH_FRONT], strength, ragged);
+    const float front = front_at(brush, slow, ragged);
     const float side = side_at(slow[FL_WASH_FRONT], strength, ragged);
     const float heavy = .05f * MAX(slow[FL_WASH_HUE], 0);
     const float rough = lines * (slow[FL_WASH_ROUGH] + heavy) * ragged;
     *hue = slow[FL_WASH_HUE] + .4f * MAX(load, -1) + .3f * front + 3 * rough;
-    return slow[FL_WASH_TONE] + .27f * load + .36f * front + rough +
-           .3f * MAX(style->tide, style->blooms) * lines * side;
+    return slow[FL_WASH_TONE] + .31f * load + .36f * front + rough +
+           .28f * MAX(style->tide, style->blooms) * lines * side;
 }
 
 void fl_wash_find_tones(const FlWash *wash, float *tones, float *hues)

@@ -191,7 +191,7 @@ static void find_fronts(const FlWash *wash, const Places *at, Values values)
         all[i] = away[k] - 10 * (fabsf(lobe[k]) - .25f);
         fronts[i] = wash->style.tide * fl_smooth((place_of[k] + .05f) / .45f) * (1 - bloom[i]) +
                     wash->style.blooms * fl_smooth(.2f + place_of[k]) * bloom[i];
-        fronts[i] *= ends * fl_smooth(.8f + 1.1f * lobe[k]); // found here and lost there
+        fronts[i] *= ends * fl_smooth(.6f + 1.3f * lobe[k]); // found here and lost there
         const float pull = .85f * fl_smooth(1.5f - fabsf(away[k]) / 24);
         values[FL_WASH_X][i] += pull * (front.x[k] - near.x[k]);
         values[FL_WASH_Y][i] += pull * (front.y[k] - near.y[k]);
