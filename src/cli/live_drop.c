@@ -8,7 +8,7 @@
 #define KNOWN "^[^./[:cntrl:]][^/[:cntrl:]]{0,190}\\.(svgz?|css|json|lottie)$"
 
 struct FlLiveDrop {
-    char *folder;
+    char *folder, *files; // files are in a folder of it, whose name may be the film's
     char *inputs[2];
 };
 
@@ -28,10 +28,10 @@ static bool add_file(FlLiveDrop *drop, SoupMessageHeaders *headers, GBytes *body
                     name ? name : "a file without a name");
         return false;
     }
-    g_autofree char *file = g_build_filename(drop->folder, name, NULL);
+    g_autofree char *file = g_build_filename(drop->files, name, NULL);
     const bool first = !drop->inputs[0];
     g_free(drop->inputs[0]);
-    drop->inputs[0] = g_strdup(first ? file : drop->folder);
+    drop->inputs[0] = g_strdup(first ? file : drop->files);
     return g_file_set_contents(file, data ? data : "", (gssize)bytes, error);
 }
 
@@ -44,8 +44,12 @@ FlLiveDrop *fl_live_drop_new(SoupServerMessage *message, GError **error)
     const int n = form ? soup_multipart_get_length(form) : 0;
     g_autoptr(FlLiveDrop) drop = g_new0(FlLiveDrop, 1);
     drop->folder = g_dir_make_tmp("fluidy-svg-XXXXXX", error);
-    bool good = drop->folder && n > 0;
-    if (drop->folder && n <= 0)
+    if (!drop->folder)
+        return NULL;
+    drop->files = g_build_filename(drop->folder, "drawing", NULL);
+    (void)g_mkdir_with_parents(drop->files, 0700); // an error is told when a file is written
+    bool good = n > 0;
+    if (!good)
         g_set_error_literal(error, FL_ERROR, FL_ERROR_INPUT, "expected files");
     for (int k = 0; k < n && good; k++) {
         SoupMessageHeaders *headers;
@@ -69,5 +73,6 @@ void fl_live_drop_free(FlLiveDrop *drop)
         fl_file_remove(drop->folder, NULL);
     g_free(drop->inputs[0]);
     g_free(drop->folder);
+    g_free(drop->files);
     g_free(drop);
 }
