@@ -139,35 +139,6 @@ static float overlap_of(const Planes *planes)
     return (float)both / (float)MAX(MIN(before, now), 1);
 }
 
-/** Finds the contour before a region's first marks; the values of its points are unknown. */
-static bool find_first(const FlWet *wet, FlMarker *marker, int frame, GError **error)
-{
-    const int earlier = before_that(wet, marker->plan, frame);
-    const FlRect rect = marked_part(wet, marker->plan, earlier < 0 ? frame : earlier, frame);
-    g_autofree uint8_t *mask = fl_alloc_unset(fl_rect_pixels(rect), 1, "a mask", error);
-    const FlWetShape shape = {
-        .rect = rect, .page = wet->sheet.page, .px = wet->sheet.px, .frames = 1, .now = mask};
-    if (!mask || !fl_wet_get_mask(wet, marker->plan->region, frame, rect, mask, error) ||
-        !fl_moving_edge_look(&marker->before, &shape, error))
-        return false;
-    marker->before.n = 0;
-    return true;
-}
-
-/** The distances in the frame before, as far as they were found then. */
-static bool find_before(const FlWet *wet, FlMarker *marker, int frame, Planes *planes,
-                        GError **error)
-{
-    const FlRect rect = planes->rect;
-    const FlMovingEdge *before = &marker->before;
-    for (size_t p = 0; p < fl_rect_pixels(rect); p++)
-        planes->distance_before[p] = -MARGIN_PX * wet->sheet.px;
-    if (!before->distance && !find_first(wet, marker, frame, error))
-        return false;
-    fl_rect_copy(before->distance, before->rect, planes->distance_before, rect, sizeof(float));
-    return true;
-}
-
 static bool read_planes(const FlWetStep *step, FlMarker *marker, int before, int now, bool moves,
                         Planes *planes, GError **error)
 {
@@ -176,7 +147,8 @@ static bool read_planes(const FlWetStep *step, FlMarker *marker, int before, int
     const FlRect rect = planes->rect;
     if (!fl_wet_get_mask(wet, region, now, rect, planes->now, error) ||
         !read_ahead(wet, marker->plan, now, planes, error) ||
-        !find_before(wet, marker, before, planes, error) ||
+        !fl_wet_get_mask(wet, region, before, rect, planes->touches, error) ||
+        !fl_distance(planes->touches, rect.width, rect.height, planes->distance_before, error) ||
         !find_touches(wet, region, planes, error) ||
         !fl_distance(planes->ahead, rect.width, rect.height, planes->beyond, error))
         return false;

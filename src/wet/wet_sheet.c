@@ -2,7 +2,6 @@
 
 #include "base/alloc.h"
 #include "base/curves.h"
-#include "base/row_kernels.h"
 #include <math.h>
 #include <string.h>
 
@@ -107,22 +106,32 @@ static void read_cell(const FlWetCell *cell, float to[N_CHANNELS])
         to[INK + c] = paint * cell->ink[c];
 }
 
-/** The paint at a place between cells. */
-static FlWetCell cell_between(const FlWetSheet *sheet, FlPoint at)
+/** The sums of the contents around a place between cells, by shares; beyond the page all is dry. */
+static void mix_cells(const FlWetSheet *sheet, FlPoint at, float sum[N_CHANNELS])
 {
     const int x = (int)floor(at.x), y = (int)floor(at.y);
     const float right = (float)(at.x - x), below = (float)(at.y - y);
-    float sum[N_CHANNELS] = {0}, own[N_CHANNELS];
+    memset(sum, 0, N_CHANNELS * sizeof *sum);
     for (int k = 0; k < 4; k++) {
         const int column = x + k % 2, row = y + k / 2;
         const float share = (k % 2 ? right : 1 - right) * (k / 2 ? below : 1 - below);
+        if (share <= 0)
+            continue;
         const bool there =
             column >= 0 && row >= 0 && column < sheet->page.width && row < sheet->page.height;
         const size_t cell = (size_t)row * (size_t)sheet->page.width + (size_t)column;
+        float own[N_CHANNELS];
         read_cell(there ? &sheet->cell[cell] : &(FlWetCell){0}, own);
         for (int c = 0; c < N_CHANNELS; c++)
             sum[c] += share * own[c];
     }
+}
+
+/** The paint at a place between cells. */
+static FlWetCell cell_between(const FlWetSheet *sheet, FlPoint at)
+{
+    float sum[N_CHANNELS];
+    mix_cells(sheet, at, sum);
     const float wet = MAX(sum[STAIN] + sum[FILM], 1e-9f), paint = MAX(sum[FRONT] + wet, 1e-9f);
     return (FlWetCell){.front = sum[FRONT],
                        .edge = sum[EDGE],
@@ -300,171 +309,78 @@ void fl_wet_sheet_wet(FlWetSheet *sheet, const FlFrontStyle *style, float frames
 
 /* ---- the layer ------------------------------------------------------------------------------ */
 
-/** Room for a thread: rows of cells, with two more at both ends. A row of px is done in turns: px 0
- * of all cells, then px 1. */
-typedef struct LayerRows {
-    int at;        // of the lower row of cells; -1: none is read
-    FlColumns wet; // cells in which the two rows are
-    float *upper[N_CHANNELS], *lower[N_CHANNELS], *mixed[N_CHANNELS];
-    float *px[N_CHANNELS], *hollow, *spot;
-    float *through[3]; // light that the marks let through
-    float *room;
-} LayerRows;
-
-static void layer_rows_init(LayerRows *rows, const FlWetSheet *sheet)
+/** The light that the contents of a place let through. A front is as sharp as the px: it ends where
+ * its edge is 0. A stain breaks up towards its sides with the paper's grain, but not where a front
+ * is still wet. */
+static void shine_through(const FlWetSheet *sheet, const float *m, FlPaperGrains grains,
+                          float through[3])
 {
-    const size_t n = (size_t)sheet->page.width + 4;
-    float **const list[] = {rows->upper, rows->lower, rows->mixed, rows->px};
-    float **const more[] = {&rows->hollow, &rows->spot, &rows->through[0], &rows->through[1],
-                            &rows->through[2]};
-    float *next = rows->room = g_new(float, n *(4 * N_CHANNELS + G_N_ELEMENTS(more)));
-    for (size_t k = 0; k < G_N_ELEMENTS(list); k++)
-        for (int c = 0; c < N_CHANNELS; c++, next += n)
-            list[k][c] = next + 2;
-    for (size_t k = 0; k < G_N_ELEMENTS(more); k++, next += n)
-        *more[k] = next + 2;
-    rows->at = -1;
-}
-
-/** Reads a row of cells, and what lies beyond both ends. Returns: those that are wet. */
-static FlColumns read_cells(const FlWetSheet *sheet, int y, float *const *to)
-{
-    const int n = sheet->page.width;
-    const FlRect near = fl_rect_grown(sheet->wet, 3, (FlRect){-2, 0, n + 4, sheet->page.height});
-    const FlWetCell *cells = sheet->cell + (size_t)y * (size_t)n;
-    FlColumns wet = {n, 0};
-    for (int x = near.x; x < near.x + near.width; x++) {
-        float own[N_CHANNELS];
-        read_cell(&cells[CLAMP(x, 0, n - 1)], own);
-        for (int c = 0; c < N_CHANNELS; c++)
-            to[c][x] = own[c];
-        if (own[FRONTS] > 0 || own[STAINS] > 0)
-            wet = (FlColumns){MIN(wet.first, x), x + 1};
-    }
-    return (FlColumns){MAX(wet.first - 1, -1), MIN(wet.last + 1, n + 1)};
-}
-
-/** Mixes what two planes have by a share of the second. */
-static void mix(float *const *a, float *const *b, int right, float share, FlColumns columns,
-                float *const *to)
-{
-    for (int c = 0; c < N_CHANNELS; c++) {
-        const float *one = a[c], *other = b[c] + right;
-        float *mixed = to[c];
-        for (int x = columns.first; x < columns.last; x++)
-            mixed[x] = one[x] + share * (other[x] - one[x]);
-    }
-}
-
-/** The cell before a px of those of a cell, 0 or -1 from that, and the share of the one after. */
-static int cell_before(const FlWetSheet *sheet, int px, float *share)
-{
-    const float at = ((float)px + 0.5f) / (float)sheet->cell_px - 0.5f;
-    *share = at < 0 ? at + 1 : at;
-    return at < 0 ? -1 : 0;
-}
-
-/** The grain of px x of each cell, in row y of the px of cells. */
-static void read_grain(const FlWetSheet *sheet, int x, int y, FlColumns columns,
-                       const LayerRows *rows)
-{
-    for (int i = columns.first; i < columns.last; i++) {
-        const FlPaperGrains own = grain_at(sheet, sheet->cell_px * i + x, y);
-        rows->hollow[i] = share_of(own.hollow), rows->spot[i] = share_of(own.spot);
-    }
-}
-
-/** A front is as sharp as the px: it ends where its edge is 0. A stain breaks up towards its sides
- * with the paper's grain, but not where a front is still wet. */
-static inline void shine_in_columns(const FlWetSheet *on, FlColumns columns, const LayerRows *rows)
-{
-    const FlWetSheet own = *on, *sheet = &own; // apart from what is written
-    float *const *m = rows->px;
     const float cell_px = (float)sheet->cell_px;
     const float soft = 0.3f * FRAYED_PX * sheet->px * cell_px;
-#pragma omp simd
-    for (int x = columns.first; x < columns.last; x++) {
-        const float hollow = rows->hollow[x], spot = rows->spot[x];
-        const float fronts = MAX(m[FRONTS][x], 1e-6f), stains = MAX(m[STAINS][x], 1e-6f);
-        const float wet = MAX(m[STAIN][x] + m[FILM][x], 1e-9f);
-        const float paint = m[FRONT][x] + wet;
-        const float g = m[GRANULATION][x] / paint, age = m[AGE][x] / wet;
-        const float grain = 0.86f + 0.5f * g * (hollow - 0.5f) + 0.2f * spot;
-        const float tip = m[LINE][x] * fl_bell(1.3f * (m[EDGE][x] - 0.6f));
-        const float front =
-            MIN(fl_ease(0, 1, m[EDGE][x]) * (m[FRONT][x] * grain + tip) / fronts, 1);
-        const float inside = m[DEPTH][x] / stains / (FRAYED_PX * sheet->px);
-        const float late = 0.3f * (hollow + spot) + 0.4f * inside;
-        const float film = m[FILM][x] * fl_ease(0, 0.9f, (1.2f + 3.6f * late - age) / 1.6f);
-        const float coarse = CLAMP(1 - 0.55f * g + 1.1f * g * (hollow - 0.5f), 0.1f, 1.4f);
-        const float pigment = m[STAIN][x] * left_of(sheet, age, hollow) * coarse;
-        const float frayed = frayed_to(sheet, hollow, spot) * (1 - MIN(3 * front, 1));
-        const float sides = fl_ease(-0.5f, soft, (m[DEPTH][x] - frayed) * cell_px) / stains;
-        const float stain = MIN(sides * (film + pigment - film * pigment / stains), 1);
-        const float dense = STRENGTH * (1 - (1 - stain) * (1 - front)) / paint;
-        rows->through[0][x] = fl_fall(dense * m[INK][x]);
-        rows->through[1][x] = fl_fall(dense * m[INK + 1][x]);
-        rows->through[2][x] = fl_fall(dense * m[INK + 2][x]);
-    }
+    const float hollow = share_of(grains.hollow), spot = share_of(grains.spot);
+    const float fronts = MAX(m[FRONTS], 1e-6f), stains = MAX(m[STAINS], 1e-6f);
+    const float wet = MAX(m[STAIN] + m[FILM], 1e-9f);
+    const float paint = m[FRONT] + wet;
+    const float g = m[GRANULATION] / paint, age = m[AGE] / wet;
+    const float grain = 0.86f + 0.5f * g * (hollow - 0.5f) + 0.2f * spot;
+    const float tip = m[LINE] * fl_bell(1.3f * (m[EDGE] - 0.6f));
+    const float front = MIN(fl_ease(0, 1, m[EDGE]) * (m[FRONT] * grain + tip) / fronts, 1);
+    const float inside = m[DEPTH] / stains / (FRAYED_PX * sheet->px);
+    const float late = 0.3f * (hollow + spot) + 0.4f * inside;
+    const float film = m[FILM] * fl_ease(0, 0.9f, (1.2f + 3.6f * late - age) / 1.6f);
+    const float coarse = CLAMP(1 - 0.55f * g + 1.1f * g * (hollow - 0.5f), 0.1f, 1.4f);
+    const float pigment = m[STAIN] * left_of(sheet, age, hollow) * coarse;
+    const float frayed = frayed_to(sheet, hollow, spot) * (1 - MIN(3 * front, 1));
+    const float sides = fl_ease(-0.5f, soft, (m[DEPTH] - frayed) * cell_px) / stains;
+    const float stain = MIN(sides * (film + pigment - film * pigment / stains), 1);
+    const float dense = STRENGTH * (1 - (1 - stain) * (1 - front)) / paint;
+    for (int c = 0; c < 3; c++)
+        through[c] = fl_fall(dense * m[INK + c]);
 }
-
-FL_FOR_EACH_CPU(shine_through, shine_in_columns,
-                (const FlWetSheet *sheet, FlColumns columns, const LayerRows *rows),
-                (sheet, columns, rows))
 
 /** The light that marks let through, as straight RGBA over the paper. Returns: true if any is
  * missing. */
-static bool write_px(const FlWetSheet *sheet, const LayerRows *rows, int x, FlColumns columns,
-                     const uint8_t paper[3], FlColumns part, uint8_t *rgba)
+static bool write_px(const float through[3], const uint8_t paper[3], uint8_t *rgba)
 {
-    bool any = false;
-    for (int i = columns.first; i < columns.last; i++) {
-        const float through[3] = {rows->through[0][i], rows->through[1][i], rows->through[2][i]};
-        const float least = MIN(MIN(through[0], through[1]), through[2]);
-        const int alpha = (int)(255 * (1 - least) + 0.75f);
-        const int px = sheet->cell_px * i + x + sheet->shift_x;
-        if (alpha <= 0 || px < part.first || px >= part.last)
-            continue;
-        const float shown = 255 / (float)alpha;
-        uint8_t *to = rgba + 4 * (px - part.first);
-        for (int c = 0; c < 3; c++) {
-            const float own = (float)paper[c] * (1 - (1 - through[c]) * shown);
-            to[c] = (uint8_t)(CLAMP(own, 0, 255) + 0.5f);
-        }
-        to[3] = (uint8_t)alpha;
-        any = true;
+    const float least = MIN(MIN(through[0], through[1]), through[2]);
+    const int alpha = (int)(255 * (1 - least) + 0.75f);
+    const float shown = 255 / (float)MAX(alpha, 1);
+    for (int c = 0; c < 3 && alpha > 0; c++) {
+        const float own = (float)paper[c] * (1 - (1 - through[c]) * shown);
+        rgba[c] = (uint8_t)(CLAMP(own, 0, 255) + 0.5f);
     }
-    return any;
+    rgba[3] = (uint8_t)MAX(alpha, 0);
+    return alpha > 0;
+}
+
+/** The place of a px on one axis of the cells, which go on beyond the page as at its edge. */
+static float place_of(const FlWetSheet *sheet, int px, int n_cells)
+{
+    const float at = ((float)px + 0.5f) / (float)sheet->cell_px - 0.5f;
+    return CLAMP(at, 0, (float)(n_cells - 1));
 }
 
 /** A row of px of the layer. Returns: true if any is marked. */
-static bool layer_row(const FlWetSheet *sheet, LayerRows *rows, int y, FlColumns part,
+static bool layer_row(const FlWetSheet *sheet, float (*cells)[N_CHANNELS], FlRect row,
                       const uint8_t paper[3], uint8_t *rgba)
 {
-    const int cell_px = sheet->cell_px, last = sheet->page.height - 1;
-    float share;
-    const int place = y - sheet->shift_y + cell_px; // of the cell above the page it would be 0
-    const int at = place / cell_px + cell_before(sheet, place % cell_px, &share);
-    if (at != rows->at) {
-        const FlColumns upper = read_cells(sheet, CLAMP(at - 1, 0, last), rows->upper);
-        const FlColumns lower = read_cells(sheet, CLAMP(at, 0, last), rows->lower);
-        rows->wet = (FlColumns){MIN(upper.first, lower.first), MAX(upper.last, lower.last)};
-        rows->at = at;
-    }
-    const FlColumns wet = rows->wet, around = {wet.first - 1, wet.last + 1};
+    const FlRect page = sheet->page, near = fl_rect_grown(sheet->wet, 1, page);
+    const float y = place_of(sheet, row.y - sheet->shift_y, page.height);
     bool any = false;
-    if (wet.first >= wet.last)
-        return false;
-    mix(rows->upper, rows->lower, 0, share, around, rows->mixed);
-    for (int x = 0; x < cell_px; x++) {
-        const int left = cell_before(sheet, x, &share);
-        if (left < 0)
-            mix(rows->mixed, rows->mixed, -1, 1 - share, wet, rows->px);
-        else
-            mix(rows->mixed, rows->mixed, 1, share, wet, rows->px);
-        read_grain(sheet, x, y - sheet->shift_y, wet, rows);
-        shine_through(sheet, wet, rows);
-        any = write_px(sheet, rows, x, wet, paper, part, rgba) || any;
+    for (int x = near.x; x < near.x + near.width; x++)
+        mix_cells(sheet, (FlPoint){x, (double)y}, cells[x]);
+    for (int px = row.x; px < row.x + row.width; px++) {
+        const float x = place_of(sheet, px - sheet->shift_x, page.width);
+        const int left = CLAMP((int)x, near.x, near.x + near.width - 1);
+        const float *a = cells[left], *b = cells[MIN(left + 1, near.x + near.width - 1)];
+        float m[N_CHANNELS], through[3];
+        if (a[FRONTS] + a[STAINS] + b[FRONTS] + b[STAINS] <= 0)
+            continue;
+        for (int c = 0; c < N_CHANNELS; c++)
+            m[c] = fl_wet_between(a[c], b[c], CLAMP(x - (float)left, 0, 1));
+        shine_through(sheet, m, grain_at(sheet, px - sheet->shift_x, row.y - sheet->shift_y),
+                      through);
+        any = write_px(through, paper, rgba + 4 * (size_t)(px - row.x)) || any;
     }
     return any;
 }
@@ -485,13 +401,12 @@ bool fl_wet_sheet_layer(const FlWetSheet *sheet, const uint8_t paper[3], FlStain
     int found = 0;
 #pragma omp parallel reduction(+ : found)
     {
-        LayerRows rows;
-        layer_rows_init(&rows, sheet);
+        float(*cells)[N_CHANNELS] = g_malloc_n((gsize)sheet->page.width, sizeof *cells);
 #pragma omp for schedule(static)
         for (int y = box.y; y < box.y + box.height; y++)
-            found += layer_row(sheet, &rows, y, (FlColumns){box.x, box.x + box.width}, paper,
+            found += layer_row(sheet, cells, (FlRect){box.x, y, box.width, 1}, paper,
                                layer->rgba + 4 * (size_t)(y - box.y) * (size_t)box.width);
-        g_free(rows.room);
+        g_free(cells);
     }
     if (found == 0)
         g_clear_pointer(&layer->rgba, free);
