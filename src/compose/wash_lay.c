@@ -2,6 +2,7 @@
 #include "base/density.h"
 #include "base/noise.h"
 #include "base/rng.h"
+#include "base/row_kernels.h"
 #include "base/schedule.h"
 #include "compose/ink.h"
 #include "compose/wash.h"
@@ -20,8 +21,8 @@ typedef struct Brush {
     const FlWash *wash;
     float white;
     float load[LOADS + 1]; // of each pass, -1..1
-    const int8_t *ragged;  // RAGGED * RAGGED
-    uint16_t factor[TONES];
+    const int32_t *ragged; // RAGGED * RAGGED corners
+    int32_t factor[TONES];
 } Brush;
 
 /* A row of noise that repeats: of copies a square apart, mixed so that its deviation stays. */
@@ -47,16 +48,31 @@ static void fill_ragged_row(int y, int8_t row[RAGGED])
     }
 }
 
-static const int8_t *ragged_noise(void)
+/* The noise at a place of the square and at those right of it, below it and below right: a byte
+ * each. */
+static int32_t corners_at(const int8_t *ragged, int x, int y)
 {
-    static int8_t ragged[RAGGED * RAGGED];
+    uint32_t corners = 0;
+    for (int k = 0; k < 4; k++) {
+        const int column = (x + k % 2) % RAGGED, row = (y + k / 2) % RAGGED;
+        corners |= (uint32_t)(uint8_t)ragged[row * RAGGED + column] << 8 * k;
+    }
+    return (int32_t)corners;
+}
+
+static const int32_t *ragged_noise(void)
+{
+    static int32_t corners[RAGGED * RAGGED];
     static gsize made;
     if (g_once_init_enter(&made)) {
+        g_autofree int8_t *ragged = g_new(int8_t, RAGGED * RAGGED);
         for (int y = 0; y < RAGGED; y++)
             fill_ragged_row(y, ragged + (size_t)y * RAGGED);
+        for (int i = 0; i < RAGGED * RAGGED; i++)
+            corners[i] = corners_at(ragged, i % RAGGED, i / RAGGED);
         g_once_init_leave(&made, 1);
     }
-    return ragged;
+    return corners;
 }
 
 static void brush_init(Brush *brush, const FlWash *wash, float white)
@@ -73,8 +89,11 @@ static void brush_init(Brush *brush, const FlWash *wash, float white)
     }
 }
 
-/* The values of the slow fields at a pixel. */
-typedef float Slow[FL_WASH_PLANES];
+/* Slow fields side by side: of points, or of pixels. */
+typedef struct Fields {
+    const float *plane[FL_WASH_PLANES];
+    int n;
+} Fields;
 
 /* Ragged noise at a place, px of the page: mostly within -1..1. */
 static inline float ragged_at(const Brush *brush, float px, float py)
@@ -82,28 +101,26 @@ static inline float ragged_at(const Brush *brush, float px, float py)
     px += 64 * RAGGED, py += 64 * RAGGED;
     const int x = (int)px, y = (int)py;
     const float right = px - (float)x, down = py - (float)y;
-    const int x0 = x & (RAGGED - 1), x1 = (x + 1) & (RAGGED - 1);
-    const int8_t *upper = brush->ragged + (y & (RAGGED - 1)) * RAGGED;
-    const int8_t *lower = brush->ragged + ((y + 1) & (RAGGED - 1)) * RAGGED;
-    const float a = (float)upper[x0] + (float)(upper[x1] - upper[x0]) * right;
-    const float b = (float)lower[x0] + (float)(lower[x1] - lower[x0]) * right;
+    const int32_t four = brush->ragged[(y & (RAGGED - 1)) * RAGGED + (x & (RAGGED - 1))];
+    const int upper = (int8_t)four, upper_right = (int8_t)(four >> 8);
+    const int lower = (int8_t)(four >> 16), lower_right = four >> 24;
+    const float a = (float)upper + (float)(upper_right - upper) * right;
+    const float b = (float)lower + (float)(lower_right - lower) * right;
     return (a + (b - a) * down) / RAGGED_ONE;
 }
 
 /* Water carries paint to the place where it stops: a thin line, sharp towards the flooded side,
  * from which fine tongues run on the way that the water went. */
-static inline float front_at(const Brush *brush, const Slow slow, float ragged)
+static inline float front_at(const Brush *brush, const Fields *slow, int i, float ragged)
 {
-    const float away = slow[FL_WASH_FRONT], strength = slow[FL_WASH_FRONTS];
-    if (strength <= 0 || away < -12 || away > 60)
-        return 0;
-    const float past = away + 3 * ragged;
-    if (past < 0)
-        return strength * fl_decay(-past * .7f);
-    const float fine = ragged_at(brush, 2.3f * slow[FL_WASH_X], 2.3f * slow[FL_WASH_Y]);
-    const float tongue = 4 + 32 * MAX(fine + .2f, 0);
-    return strength * (.5f * fl_smooth(1 - past / tongue) + .2f * fl_decay(past * .08f) +
-                       .4f * fl_decay(past * .6f));
+    const float away = slow->plane[FL_WASH_FRONT][i], past = away + 3 * ragged;
+    const float fine =
+        ragged_at(brush, 2.3f * slow->plane[FL_WASH_X][i], 2.3f * slow->plane[FL_WASH_Y][i]);
+    const float tongue = 4 + 32 * MAX(fine + .2f, 0), beyond = MAX(past, 0);
+    const float line = .5f * fl_smooth(1 - past / tongue) + .2f * fl_decay(beyond * .08f) +
+                       .4f * fl_decay(beyond * .6f);
+    const float front = past < 0 ? fl_decay(MAX(-past, 0) * .7f) : line;
+    return (away < -12) | (away > 60) ? 0 : MAX(slow->plane[FL_WASH_FRONTS][i], 0) * front;
 }
 
 /* From -.5 on the side that water flooded to .5 beyond its front. */
@@ -115,97 +132,162 @@ static inline float side_at(float away, float strength, float ragged)
 }
 
 /* The load of the brush, mostly within -1..1, with streaks of its hairs where it is dry. */
-static inline float load_at(const Brush *brush, const Slow slow, float ragged)
+static inline float load_at(const Brush *brush, const Fields *slow, int i, float ragged)
 {
     const FlWash *wash = brush->wash;
-    const float dry = fl_smooth(3 * slow[FL_WASH_DRY]);
-    const float pass = slow[FL_WASH_PASS] + .08f * ragged, whole = floorf(pass);
-    const float width = .5f - .47f * dry, part = pass - whole;
-    const float next = part > 1 - width ? fl_smooth((part - 1 + width) / width) : 0;
-    const float *load = brush->load + ((int)whole & (LOADS - 1));
-    const float along = wash->along[0] * slow[FL_WASH_X] + wash->along[1] * slow[FL_WASH_Y];
-    const float hairs = ragged_at(brush, slow[FL_WASH_PASS] * wash->brush_px, .08f * along);
-    return slow[FL_WASH_LINES] *
-           (load[0] + (load[1] - load[0]) * next + (.14f + .5f * dry) * hairs);
+    const float dry = fl_smooth(3 * slow->plane[FL_WASH_DRY][i]);
+    const float pass = slow->plane[FL_WASH_PASS][i] + .08f * ragged;
+    const int whole = (int)pass - (pass < (float)(int)pass), own = whole & (LOADS - 1);
+    const float width = .5f - .47f * dry, part = pass - (float)whole;
+    const float next = fl_smooth((part - 1 + width) / width);
+    const float along =
+        wash->along[0] * slow->plane[FL_WASH_X][i] + wash->along[1] * slow->plane[FL_WASH_Y][i];
+    const float hairs =
+        ragged_at(brush, slow->plane[FL_WASH_PASS][i] * wash->brush_px, .08f * along);
+    return slow->plane[FL_WASH_LINES][i] *
+           (brush->load[own] + (brush->load[own + 1] - brush->load[own]) * next +
+            (.14f + .5f * dry) * hairs);
 }
 
 /* The ln of the factor on the amount by a wash of strength 1, and the balance of the pigments, at a
  * pixel. Every edge parts two tones, passes as well as what dried first from what dried last; it is
  * crisp where it is found and wide where it is lost, and never ends amid one tone. Slopes are
  * ragged, and so is the heavy one of the pigments. */
-static inline float tone_at(const Brush *brush, const Slow slow, float *hue)
+static inline float tone_at(const Brush *brush, const Fields *slow, int i, float *hue)
 {
     const FlWashStyle *style = &brush->wash->style;
-    const float lines = slow[FL_WASH_LINES], strength = slow[FL_WASH_FRONTS];
-    const float ragged = ragged_at(brush, slow[FL_WASH_X], slow[FL_WASH_Y]);
-    const float load = style->passes * load_at(brush, slow, ragged);
-    const float front = front_at(brush, slow, ragged);
-    const float side = side_at(slow[FL_WASH_FRONT], strength, ragged);
-    const float heavy = .05f * MAX(slow[FL_WASH_HUE], 0);
-    const float rough = lines * (slow[FL_WASH_ROUGH] + heavy) * ragged;
-    *hue = slow[FL_WASH_HUE] + .4f * MAX(load, -1) + .3f * front + 3 * rough;
-    return slow[FL_WASH_TONE] + .31f * load + .36f * front + rough +
+    const float lines = slow->plane[FL_WASH_LINES][i], strength = slow->plane[FL_WASH_FRONTS][i];
+    const float ragged = ragged_at(brush, slow->plane[FL_WASH_X][i], slow->plane[FL_WASH_Y][i]);
+    const float load = style->passes * load_at(brush, slow, i, ragged);
+    const float front = front_at(brush, slow, i, ragged);
+    const float side = side_at(slow->plane[FL_WASH_FRONT][i], strength, ragged);
+    const float heavy = .05f * MAX(slow->plane[FL_WASH_HUE][i], 0);
+    const float rough = lines * (slow->plane[FL_WASH_ROUGH][i] + heavy) * ragged;
+    *hue = slow->plane[FL_WASH_HUE][i] + .4f * MAX(load, -1) + .3f * front + 3 * rough;
+    return slow->plane[FL_WASH_TONE][i] + .31f * load + .36f * front + rough +
            .28f * MAX(style->tide, style->blooms) * lines * side;
 }
+
+static inline void tones_of(const Brush *brush, const Fields *fields, float *restrict tones,
+                            float *restrict hues)
+{
+#pragma omp simd
+    for (int i = 0; i < fields->n; i++)
+        tones[i] = tone_at(brush, fields, i, &hues[i]);
+}
+
+FL_FOR_EACH_CPU(find_tones, tones_of,
+                (const Brush *brush, const Fields *fields, float *tones, float *hues),
+                (brush, fields, tones, hues))
 
 void fl_wash_find_tones(const FlWash *wash, float *tones, float *hues)
 {
     Brush brush;
+    Fields fields = {.n = wash->width * wash->height};
     brush_init(&brush, wash, 0);
-    for (int i = 0; i < wash->width * wash->height; i++) {
-        Slow slow;
-        for (int k = 0; k < FL_WASH_PLANES; k++)
-            slow[k] = wash->plane[k][i];
-        tones[i] = tone_at(&brush, slow, &hues[i]);
-    }
+    for (int k = 0; k < FL_WASH_PLANES; k++)
+        fields.plane[k] = wash->plane[k];
+    find_tones(&brush, &fields, tones, hues);
 }
 
 /* calm: 1 for the amount that is the fill, 0 for that of the recording, whose edges stay. */
-static int amount_of(const Brush *brush, int recorded, float calm, float tone)
+static inline int32_t amount_of(const Brush *brush, int32_t recorded, float calm, float tone)
 {
     const float inside = fl_clamp(2.5f / FL_AMOUNT_ONE * (float)recorded - .5f, 0, 1);
     const float amount = (float)recorded + calm * inside * (float)(FL_AMOUNT_ONE - recorded);
     const int i = (int)((fl_clamp(tone, TONE_LEAST, 1.37f) - TONE_LEAST) * TONE_ONE);
-    const uint32_t laid = ((uint32_t)amount * brush->factor[i] + 64 * 255 / 2) / (64 * 255);
+    const int32_t laid = ((int32_t)amount * brush->factor[i] + 64 * 255 / 2) / (64 * 255);
     const float bare = .9f * FL_AMOUNT_ONE + .1f * amount;
     const float mixed = (float)laid + brush->white * (bare - (float)laid);
-    return MIN((int)mixed, FL_AMOUNTS - 1);
+    return MIN((int32_t)mixed, FL_AMOUNTS - 1);
 }
 
-/* Row y of the area between four points at a time. */
+#define RUN 512 // px of a row that are laid at a time
+
+/* Some px of a row between points, those at each place between two points side by side. */
+typedef struct Run {
+    int first, n; // points; the first one may lie beside the wash
+    float slow[FL_WASH_PLANES][RUN], tones[RUN], hues[RUN];
+    int32_t amounts[RUN], plays[RUN];
+} Run;
+
+/* The slow fields between points of row y of the page; beside those of the wash as at its rim. */
+static inline void find_slow(const FlWash *wash, int y, Run *run)
+{
+    const int step = wash->step;
+    const int top = CLAMP(y - wash->box.y, 0, (wash->height - 1) * step - 1);
+    const size_t row = (size_t)(top / step) * (size_t)wash->width;
+    const float down = (float)(top % step) / (float)step;
+    float at[RUN + 1];
+    for (int k = 0; k < FL_WASH_PLANES; k++) {
+        const float *upper = wash->plane[k] + row, *lower = upper + wash->width;
+        for (int i = 0; i <= run->n; i++) {
+            const int point = CLAMP(run->first + i, 0, wash->width - 1);
+            at[i] = upper[point] + (lower[point] - upper[point]) * down;
+        }
+        for (int place = 0; place < step; place++) {
+            const float right = (float)place / (float)step;
+            float *slow = run->slow[k] + place * run->n;
+            for (int i = 0; i < run->n; i++)
+                slow[i] = at[i] + (at[i + 1] - at[i]) * right;
+        }
+    }
+}
+
+static inline void lay_in_run(const Brush *brush, int y, Run *restrict run)
+{
+    const FlWash *wash = brush->wash;
+    const float wet = wash->style.wash;
+    Fields fields = {.n = wash->step * run->n};
+    find_slow(wash, y, run);
+    for (int k = 0; k < FL_WASH_PLANES; k++)
+        fields.plane[k] = run->slow[k];
+    tones_of(brush, &fields, run->tones, run->hues);
+#pragma omp simd
+    for (int i = 0; i < fields.n; i++) {
+        // lines look like dirt in white
+        const float shadow = fl_smooth((3.5f * wet * run->slow[FL_WASH_TONE][i] + .15f) / 1.5f);
+        const float hue = run->hues[i] + brush->white * (shadow - run->hues[i]);
+        run->plays[i] = (int32_t)(fl_clamp(hue, -1.95f, 1.95f) * FL_PLAY_ONE);
+        run->amounts[i] =
+            amount_of(brush, run->amounts[i], run->slow[FL_WASH_CALM][i], wet * run->tones[i]);
+    }
+}
+
+FL_FOR_EACH_CPU(lay_run, lay_in_run, (const Brush *brush, int y, Run *run), (brush, y, run))
+
+/* Reads the amounts of px x … end of a row, of which the run's first is px left; with play it
+ * writes them, and the plays of pigments. */
+static void exchange(Run *run, int step, int left, int x, int end, int16_t *amounts, int8_t *play)
+{
+    for (int i = 0, px = left; i < run->n; i++)
+        for (int place = 0; place < step; place++, px++) {
+            const int at = place * run->n + i;
+            const bool inside = px >= x && px < end;
+            if (!play)
+                run->amounts[at] = inside ? MAX(amounts[px], 0) : 0;
+            else if (inside && amounts[px] >= 0)
+                amounts[px] = (int16_t)run->amounts[at], play[px] = (int8_t)run->plays[at];
+        }
+}
+
+/* Row y of the area. */
 static void lay_row(const Brush *brush, const FlArea *area, int y, int16_t *amounts, int8_t *play)
 {
     const FlWash *wash = brush->wash;
     const FlColumns span = fl_area_row(area, y);
-    const int step = wash->step;
-    const int top = CLAMP(area->box.y + y - wash->box.y, 0, (wash->height - 1) * step - 1);
-    const size_t row = (size_t)(top / step) * (size_t)wash->width;
-    const float ty = (float)(top % step) / (float)step;
+    const int step = wash->step, beside = area->box.x - wash->box.x + 64 * step;
+    Run run;
     for (int x = span.first; x < span.last;) {
-        const int left = CLAMP(area->box.x + x - wash->box.x, 0, (wash->width - 1) * step - 1);
-        const int i = left / step, end = MIN(span.last, x + step - left % step);
-        Slow slow, more;
-        for (int k = 0; k < FL_WASH_PLANES; k++) {
-            const float *upper = wash->plane[k] + row + (size_t)i, *lower = upper + wash->width;
-            const float a = upper[0] + (lower[0] - upper[0]) * ty;
-            const float b = upper[1] + (lower[1] - upper[1]) * ty;
-            more[k] = (b - a) / (float)step;
-            slow[k] = a + more[k] * (float)(left % step);
-        }
-        for (; x < end; x++) {
-            if (amounts[x] >= 0) {
-                float hue;
-                const float tone = wash->style.wash * tone_at(brush, slow, &hue);
-                if (brush->white > 0) { // lines look like dirt in white
-                    const float side = wash->style.wash * slow[FL_WASH_TONE];
-                    hue += brush->white * (fl_smooth((3.5f * side + .15f) / 1.5f) - hue);
-                }
-                amounts[x] = (int16_t)amount_of(brush, amounts[x], slow[FL_WASH_CALM], tone);
-                play[x] = (int8_t)(fl_clamp(hue, -1.95f, 1.95f) * FL_PLAY_ONE);
-            }
-            for (int k = 0; k < FL_WASH_PLANES; k++)
-                slow[k] += more[k];
-        }
+        const int point = (x + beside) / step;
+        const int left = point * step - beside; // the px of that point
+        run.first = point - 64;
+        run.n = MIN((span.last - left + step - 1) / step, RUN / step);
+        const int end = MIN(left + run.n * step, span.last);
+        exchange(&run, step, left, x, end, amounts, NULL);
+        lay_run(brush, area->box.y + y, &run);
+        exchange(&run, step, left, x, end, amounts, play);
+        x = end;
     }
 }
 
