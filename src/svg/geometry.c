@@ -154,7 +154,7 @@ FlOutlines *fl_outlines_of_shape(const xmlNode *node, double dpi, FlPageSize vie
     return outlines;
 }
 
-FlOutlines *fl_outlines_new(FlInheritance *inheritance, const FlLeaves *list, GHashTable *ids)
+FlOutlines *fl_outlines_new(FlInheritance *inheritance, const FlLeaves *list)
 {
     const GArray *leaves = list->leaf;
     g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
@@ -163,7 +163,7 @@ FlOutlines *fl_outlines_new(FlInheritance *inheritance, const FlLeaves *list, GH
     g_autofree FlGeometry *read = g_new0(FlGeometry, leaves->len + 1);
     for (guint i = 0; i < leaves->len; i++) {
         const FlLeaf *leaf = &g_array_index(leaves, FlLeaf, i);
-        const xmlNode *node = g_hash_table_lookup(ids, leaf->id);
+        const xmlNode *node = g_hash_table_lookup(list->ids, leaf->id);
         if (node)
             read[i] = read_leaf(&reader, leaf, node);
     }

@@ -42,12 +42,12 @@ typedef struct FlOutlines {
 } FlOutlines;
 
 /**
- * Reads the outlines of leaves in their normalised document, whose elements are `ids`.
+ * Reads the outlines of leaves in their normalised document.
  *
  * An arc is always four cubics and a rectangle always eight, so that a shape keeps its structure
  * while its numbers change; a closing line of no length is dropped.
  */
-FlOutlines *fl_outlines_new(FlInheritance *inheritance, const FlLeaves *list, GHashTable *ids);
+FlOutlines *fl_outlines_new(FlInheritance *inheritance, const FlLeaves *list);
 
 /**
  * The outline of a path or basic shape alone, in local coordinates; percentages are of `viewport`,

@@ -295,7 +295,7 @@ FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole)
         add_all(&w, xmlDocGetRootElement(doc));
     else
         walk(&w, xmlDocGetRootElement(doc));
-    g_hash_table_unref(w.by_id);
+    leaves->ids = w.by_id;
     for (int k = 0; k < N_LISTS; k++)
         g_string_free(w.list[k], TRUE);
     return leaves;
@@ -308,5 +308,6 @@ void fl_leaves_free(FlLeaves *leaves)
     g_array_unref(leaves->leaf);
     g_array_unref(leaves->unit);
     g_array_unref(leaves->mask);
+    g_hash_table_unref(leaves->ids);
     g_free(leaves);
 }

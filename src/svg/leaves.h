@@ -47,9 +47,10 @@ typedef struct FlGroupMask {
 } FlGroupMask;
 
 typedef struct FlLeaves {
-    GArray *leaf; // FlLeaf
-    GArray *unit; // FlGroupUnit
-    GArray *mask; // FlGroupMask
+    GArray *leaf;    // FlLeaf
+    GArray *unit;    // FlGroupUnit
+    GArray *mask;    // FlGroupMask
+    GHashTable *ids; // of the document: id -> xmlNode, the first of that id
 } FlLeaves;
 
 /** The name of a leaf in a list of what is drawn as one, see fl_leaves_new(); to be freed. */

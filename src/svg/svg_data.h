@@ -20,8 +20,8 @@ struct FlSvg {
     double dpi;
     xmlDoc *doc;
     RsvgHandle *handle; // of the normalised document
-    GHashTable *ids;    // of the document; made when it is first read, as are the next two
-    GHashTable *others; // real path of another file -> its elements, in svg_paint.c
+    GHashTable *others; // real path of another file -> its elements, in svg_paint.c; made when
+                        // it is first read, as is the next
     FlInheritance inheritance;
     int n_nameless;       // groups without an id
     GHashTable *variants; // handles of the document without some parts or masks
@@ -41,7 +41,7 @@ RsvgHandle *fl_svg_handle(FlSvg *svg, FlPart part, bool bare, GError **error);
 /** Likewise the handle whose layers are the groups of that depth, each the coverage of its mask. */
 RsvgHandle *fl_svg_mask_handle(FlSvg *svg, int depth, GError **error);
 
-/** What its elements inherit on a page of that size; svg->ids are there then. It belongs to svg. */
+/** What its elements inherit on a page of that size; it belongs to svg. */
 FlInheritance *fl_svg_inheritance(FlSvg *svg, FlPageSize page);
 
 /** Sets FL_ERROR_INPUT in plain words. */

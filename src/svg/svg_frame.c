@@ -86,7 +86,6 @@ void fl_svg_free(FlSvg *svg)
     g_clear_pointer(&svg->variants, g_hash_table_unref);
     fl_svg_drop_covers(svg);
     g_free(svg->cover);
-    g_clear_pointer(&svg->ids, g_hash_table_unref);
     fl_inheritance_clear(&svg->inheritance);
     g_clear_pointer(&svg->others, g_hash_table_unref);
     fl_leaves_free(svg->leaves);
@@ -146,8 +145,6 @@ xmlDoc *fl_svg_document(const FlSvg *svg)
 FlInheritance *fl_svg_inheritance(FlSvg *svg, FlPageSize page)
 {
     FlInheritance *known = &svg->inheritance;
-    if (!svg->ids)
-        svg->ids = fl_document_ids(svg->doc);
     if (!known->known || known->page.width != page.width || known->page.height != page.height) {
         fl_inheritance_clear(known);
         *known = fl_inheritance_of(svg->dpi, page);
@@ -158,7 +155,7 @@ FlInheritance *fl_svg_inheritance(FlSvg *svg, FlPageSize page)
 FlOutlines *fl_svg_outlines(FlSvg *svg, FlPageSize page)
 {
     FlInheritance *inheritance = fl_svg_inheritance(svg, page);
-    return fl_outlines_new(inheritance, svg->leaves, svg->ids);
+    return fl_outlines_new(inheritance, svg->leaves);
 }
 
 bool fl_canvas_parse(const char *text, FlCanvas *canvas, GError **error)

@@ -125,7 +125,7 @@ static const xmlNode *element_of(const Reader *r, const char *target)
     const char *id = target ? strchr(target, '#') : NULL;
     if (!id)
         return NULL;
-    GHashTable *ids = id == target ? r->svg->ids : elements_of_other(r->svg, target);
+    GHashTable *ids = id == target ? r->svg->leaves->ids : elements_of_other(r->svg, target);
     return ids ? g_hash_table_lookup(ids, id + 1) : NULL;
 }
 
@@ -511,7 +511,7 @@ int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPageSize page,
     FlInheritance *inheritance = fl_svg_inheritance(svg, page);
     if (!svg->others)
         svg->others = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, other_free);
-    const xmlNode *node = g_hash_table_lookup(svg->ids, leaf->id);
+    const xmlNode *node = g_hash_table_lookup(svg->leaves->ids, leaf->id);
     g_autoptr(GArray) ops = g_array_new(FALSE, FALSE, sizeof(Op));
     Reader r = {svg, ops, MOST_ELEMENTS};
     g_array_set_clear_func(ops, op_clear);
