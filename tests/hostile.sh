@@ -136,9 +136,7 @@ for body in "<rect width='30' height='30' fill='#a31' clip-path='url(#c)'/>" "<g
     look && grep -q aa3311 out || break
 done
 result $? 'a clip path that reaches far off the page is drawn'
-echo "<svg xmlns='http://www.w3.org/2000/svg' width='48' height='48'>$shape$(for i in $(seq 3000); do
-    echo "<g data-x='$(printf '%04000d' 0)'/>"
-done)</svg>" >x.svg
+svg x.svg "$shape$(printf "<g data-x='%04000d'/>" {1..3000})"
 look && grep -q aa3311 out
 result $? 'a drawing of 12 MB is read'
 svg x.svg "$(for i in $(seq 8000); do
@@ -238,15 +236,15 @@ crash_one() { # crash_one ARGUMENT...: flat, and the process that draws gets a s
     for _ in $(seq 1200); do
         # The processes that start workers, and workers that wait or draw a simple frame, take less time.
         # shellcheck disable=SC2046,SC2086 # lists
-        drawing=$(children 3 $(children 0 $painter)) && [ -n "$drawing" ] && break
+        drawing=$(children 1 $(children 0 $painter)) && [ -n "$drawing" ] && break
         sleep 0.1
     done
     # shellcheck disable=SC2086
     [ -n "$drawing" ] && kill -SEGV $drawing
     wait $painter
 }
-flat --limit seconds=3 x.svg
-[ $? = 1 ] && says 'x.svg: frame 1: drawing it took longer than 3 s; use --limit seconds=N to allow more'
+flat --limit seconds=1 x.svg
+[ $? = 1 ] && says 'x.svg: frame 1: drawing it took longer than 1 s; use --limit seconds=N to allow more'
 result $? 'so is one that takes too long when it is drawn'
 crash_one x.svg
 [ $? = 1 ] && says 'x.svg: frame 1: the SVG library crashed while drawing it (Segmentation fault)'
@@ -260,8 +258,8 @@ else
 fi
 rm -rf mixed && mkdir mixed && cp x.svg mixed/m_1.svg && svg mixed/m_2.svg "$shape" && cp mixed/m_2.svg mixed/m_4.svg
 cp x.svg mixed/m_3.svg && rm -rf o
-flat --limit seconds=3 --missing hold mixed
-[ $? = 1 ] && grep -q 'drawing it took longer than 3 s; use --limit seconds=N to allow more' err && [ ! -e o ]
+flat --limit seconds=1 --missing hold mixed
+[ $? = 1 ] && grep -q 'drawing it took longer than 1 s; use --limit seconds=N to allow more' err && [ ! -e o ]
 result $? 'a frame that ran out of time is an error, whatever --missing says'
 if [ -n "${ASAN_OPTIONS:-}" ]; then
     skip 'a film holds the frame before those that cannot be drawn, and counts them' 'the sanitizer needs the memory'
@@ -278,12 +276,12 @@ result $? 'or skips them'
 # rest_a_while FOLDER: the film slow/, whose processes all stop for longer than a frame may take.
 rest_a_while() {
     local group
-    setsid nice -n 19 "$program" slow --flat -j 1 -W 800 -o "$1/%d.png" -q --limit seconds=4 --missing hold &
-    for _ in 1 2 3; do
+    setsid nice "$program" slow --flat -j 1 -W 800 -o "$1/%d.png" -q --limit seconds=2 --missing hold &
+    for _ in 1 2; do
         sleep 0.5
         group=$(ps -eo pid=,pgid= | awk -v leader=$! '$2 == leader { print $1 }' | xargs)
         # shellcheck disable=SC2086 # a list
-        kill -STOP $group 2>/dev/null && sleep 5 && kill -CONT $group 2>/dev/null
+        kill -STOP $group 2>/dev/null && sleep 2.5 && kill -CONT $group 2>/dev/null
     done
     wait $!
 }
@@ -293,7 +291,7 @@ for i in 1 2 3; do
         numOctaves='9'/></filter><rect width='48' height='48' filter='url(#f)'/>$shape"
 done
 "$program" slow --flat -W 800 -o 'awake/%d.png' -q && rest_a_while rested && same awake rested
-result $? 'a film that is stopped for a while, at the lowest priority, is drawn as if it were not'
+result $? 'a film that is stopped for a while, at a low priority, is drawn as if it were not'
 
 # What a drawing must not see: the same bytes as if it were not there.
 cd ..

@@ -28,7 +28,8 @@ render=("$build/src/cli/fluidy-svg" -s fixtures/style-small -W 64 -f 1-2 -j 3 --
 
 case $what in
 address)
-    make_build -Db_sanitize=address,undefined -Db_lundef=false
+    # lines are enough to say where; it builds a fifth sooner
+    make_build -Db_sanitize=address,undefined -Db_lundef=false -Ddebug=false -Dc_args=-g1
     ninja -C "$build"
     export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
     export LSAN_OPTIONS=suppressions=$source/tests/lsan.supp:print_suppressions=0
@@ -44,7 +45,8 @@ thread)
     export CC=clang
     make_build --werror -Db_sanitize=thread -Db_lundef=false
     programs=(distance film guides holds layers synth synth_cases watercolour)
-    ninja -C "$build" # all of it, for clang's warnings
+    # most of the sources, for clang's warnings
+    ninja -C "$build" src/cli/fluidy-{svg,style} "${programs[@]/#/tests/test_}"
     clang -D_GNU_SOURCE -shared -fPIC -Wl,--unresolved-symbols=ignore-all \
         $(pkg-config --cflags glib-2.0) tests/tsan_glib.c -o "$build/tsan_glib.so"
     archer=$(clang -print-file-name=libarcher.so)
