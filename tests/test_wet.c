@@ -243,6 +243,41 @@ static void test_comes_in(void)
     g_assert_cmpfloat(side, >, 0.8f * within);
 }
 
+/* The middles of the fronts and stains of a disk that goes 6 cells on, of cells beside the page's.
+ */
+static void find_middles(float x0, float beside, float middle[2])
+{
+    Scene *scene = scene_new();
+    float sum[2] = {0}, all[2] = {0};
+    scene->shape.beside[0] = beside;
+    mark(scene, x0, x0 + 6, 0);
+    for (guint i = 0; i < scene->fronts->len; i++) {
+        const FlFrontMark *front = &g_array_index(scene->fronts, FlFrontMark, i);
+        const float wet = front->density * CLAMP(front->edge, 0, 1);
+        sum[0] += wet * (float)(front->at % SIDE), all[0] += wet;
+    }
+    for (guint i = 0; i < scene->stains->len; i++) {
+        const FlStainMark *stain = &g_array_index(scene->stains, FlStainMark, i);
+        sum[1] += stain->charge * (float)(stain->at % SIDE), all[1] += stain->charge;
+    }
+    for (int k = 0; k < 2; k++)
+        middle[k] = sum[k] / all[k];
+    scene_free(scene);
+}
+
+/* Where a camera has brought the paper's cells beside those of the page, marks lie in their place
+ * all the same: those of two frames meet without a line between them. */
+static void test_beside(void)
+{
+    float in_place[2], beside[2];
+    find_middles(80, 0, in_place);
+    find_middles(80, 0.4f, beside);
+    g_test_message("fronts at %.2f and %.2f, stains at %.2f and %.2f", in_place[0],
+                   beside[0] + 0.4f, in_place[1], beside[1] + 0.4f);
+    for (int k = 0; k < 2; k++)
+        g_assert_cmpfloat_with_epsilon(beside[k] + 0.4f, in_place[k], 0.2f);
+}
+
 static void test_turn(void)
 {
     Scene *scene = scene_new();
@@ -654,6 +689,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/stains-know-how-far-their-sides-are", test_sides);
     g_test_add_func("/wet/stains-at-the-side-of-the-page", test_comes_in);
     g_test_add_func("/wet/stains-break-up-where-they-begin", test_start);
+    g_test_add_func("/wet/marks-lie-in-place-between-cells", test_beside);
     g_test_add_func("/wet/paint-that-passes-takes-up-a-stain", test_taken_up);
     g_test_add_func("/wet/a-stain-breaks-up-towards-its-sides", test_frayed);
     g_test_add_func("/wet/a-front-ends-alike-on-stains", test_front_over_stain);

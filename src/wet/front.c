@@ -69,14 +69,14 @@ static float passing_by(const FlWetShape *shape, const FlEdgePoint *point)
     return fl_bell(along / (7 * shape->px));
 }
 
-/** The front at a cell that lies `beyond` the masks of the frames to come. Returns: false if it
- * does not reach so far. */
-static bool find_mark(const Front *front, const FlWetSheet *sheet, size_t p, float beyond,
-                      FlFrontMark *mark)
+/** The front at a cell of depth `depth` that lies `beyond` the masks of the frames to come.
+ * Returns: false if it does not reach so far. */
+static bool find_mark(const Front *front, const FlWetSheet *sheet, size_t p, float depth,
+                      float beyond, FlFrontMark *mark)
 {
     const FlFrontStyle *style = front->dials->style;
     const FlEdgePoint *point = &front->edge->point[front->edge->nearest[p]];
-    const float px = front->shape->px, f = front->width[p], depth = front->edge->distance[p];
+    const float px = front->shape->px, f = front->width[p];
     const float inset = MIN(2.5f * px, 0.45f * point->half_width), ahead = inset - depth;
     if (f <= 0.5f * px || depth >= 14 * px || ahead > 4.2f * f + 6 * px)
         return false;
@@ -115,8 +115,13 @@ static void add_marks(const Front *front, const FlWetAround *around, const FlWet
         for (int x = 0; x < rect.width; x++) {
             const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
             FlFrontMark mark = {.at = (rect.y + y) * page.width + rect.x + x};
-            if (around->touches[p] & 1 && front->edge->nearest[p] >= 0 &&
-                find_mark(front, sheet, p, around->beyond[p], &mark))
+            if (!(around->touches[p] & 1) || front->edge->nearest[p] < 0)
+                continue;
+            const float px = (float)x + front->shape->beside[0];
+            const float py = (float)y + front->shape->beside[1];
+            const float depth = fl_wet_plane_at(front->edge->distance, rect, px, py);
+            const float beyond = fl_wet_plane_at(around->beyond, rect, px, py);
+            if (find_mark(front, sheet, p, depth, beyond, &mark))
                 g_array_append_val(marks, mark);
         }
 }

@@ -213,6 +213,7 @@ static bool mark_moving(const FlWetStep *step, FlMarker *marker, int before, int
                         .distance_before = planes.distance_before,
                         .motion = planes.motion,
                         .came = within(&step->came, planes.rect),
+                        .beside = {wet->camera_x, wet->camera_y},
                         .overlap = overlap_of(&planes),
                         .laid = &wet->laid,
                         .ink = step->painted ? NULL : wet->ink + 3 * marker->plan->region,

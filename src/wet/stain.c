@@ -163,16 +163,19 @@ void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
                 continue;
             const FlEdgePoint *point = &edge->point[edge->nearest[p]];
             const float inset = MIN(2.5f * shape->px, 0.45f * point->half_width);
-            const float below = under(shape, point), now = edge->distance[p] - inset - below;
+            const float px = (float)x + shape->beside[0], py = (float)y + shape->beside[1];
+            const float below = under(shape, point);
+            const float depth = fl_wet_plane_at(edge->distance, rect, px, py) - inset;
+            const float now = depth - below;
             const float reach = fabsf(point->u) + fabsf(point->v) + 2;
             const bool far = -now > reach && shape->distance_before[p] < inset - reach;
             if (now >= 0.5f || far)
                 continue;
-            const Passing pixel = {shape, point, edge->distance, inset, (float)x, (float)y};
+            const Passing pixel = {shape, point, edge->distance, inset, px, py};
             const int32_t at = (rect.y + y) * shape->page.width + rect.x + x;
             pass(&pixel, dials, at, now, marks);
             if (below > 0.5f)
-                wet_below(&pixel, dials, at, edge->distance[p] - inset, fronts);
+                wet_below(&pixel, dials, at, depth, fronts);
         }
 }
 
