@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/curves.h"
+#include "base/row_kernels.h"
 #include <math.h>
 #include <string.h>
 
@@ -56,7 +57,7 @@ void fl_wet_sheet_clear(FlWetSheet *sheet)
 
 static int wrapped(double x, int size)
 {
-    const int rest = (int)floor(x) % size;
+    const int whole = (int)floor(x), rest = whole >= 0 && whole < size ? whole : whole % size;
     return rest < 0 ? rest + size : rest;
 }
 
@@ -309,34 +310,49 @@ void fl_wet_sheet_wet(FlWetSheet *sheet, const FlFrontStyle *style, float frames
 
 /* ---- the layer ------------------------------------------------------------------------------ */
 
-/** The light that the contents of a place let through. A front is as sharp as the px: it ends where
- * its edge is 0. A stain breaks up towards its sides with the paper's grain, but not where a front
- * is still wet. */
-static void shine_through(const FlWetSheet *sheet, const float *m, FlPaperGrains grains,
-                          float through[3])
+#define BATCH 256 // px that are found side by side
+
+/** The contents of some px of a row, the paper there, and the light that they let through. */
+typedef struct Batch {
+    int n, px[BATCH];
+    float contents[N_CHANNELS][BATCH], hollow[BATCH], spot[BATCH], through[3][BATCH];
+} Batch;
+
+/** Finds the light of each px. A front is as sharp as the px: it ends where its edge is 0. A stain
+ * breaks up towards its sides with the paper's grain, but not where a front is still wet. */
+static inline void shine_through(const FlWetSheet *on, Batch *restrict batch)
 {
+    const FlWetSheet own = *on, *sheet = &own; // apart from what is written
     const float cell_px = (float)sheet->cell_px;
     const float soft = 0.3f * FRAYED_PX * sheet->px * cell_px;
-    const float hollow = share_of(grains.hollow), spot = share_of(grains.spot);
-    const float fronts = MAX(m[FRONTS], 1e-6f), stains = MAX(m[STAINS], 1e-6f);
-    const float wet = MAX(m[STAIN] + m[FILM], 1e-9f);
-    const float paint = m[FRONT] + wet;
-    const float g = m[GRANULATION] / paint, age = m[AGE] / wet;
-    const float grain = 0.86f + 0.5f * g * (hollow - 0.5f) + 0.2f * spot;
-    const float tip = m[LINE] * fl_bell(1.3f * (m[EDGE] - 0.6f));
-    const float front = MIN(fl_ease(0, 1, m[EDGE]) * (m[FRONT] * grain + tip) / fronts, 1);
-    const float inside = m[DEPTH] / stains / (FRAYED_PX * sheet->px);
-    const float late = 0.3f * (hollow + spot) + 0.4f * inside;
-    const float film = m[FILM] * fl_ease(0, 0.9f, (1.2f + 3.6f * late - age) / 1.6f);
-    const float coarse = CLAMP(1 - 0.55f * g + 1.1f * g * (hollow - 0.5f), 0.1f, 1.4f);
-    const float pigment = m[STAIN] * left_of(sheet, age, hollow) * coarse;
-    const float frayed = frayed_to(sheet, hollow, spot) * (1 - MIN(3 * front, 1));
-    const float sides = fl_ease(-0.5f, soft, (m[DEPTH] - frayed) * cell_px) / stains;
-    const float stain = MIN(sides * (film + pigment - film * pigment / stains), 1);
-    const float dense = STRENGTH * (1 - (1 - stain) * (1 - front)) / paint;
-    for (int c = 0; c < 3; c++)
-        through[c] = fl_fall(dense * m[INK + c]);
+#pragma omp simd
+    for (int i = 0; i < batch->n; i++) {
+        float(*const m)[BATCH] = batch->contents;
+        const float hollow = batch->hollow[i], spot = batch->spot[i];
+        const float fronts = MAX(m[FRONTS][i], 1e-6f), stains = MAX(m[STAINS][i], 1e-6f);
+        const float wet = MAX(m[STAIN][i] + m[FILM][i], 1e-9f);
+        const float paint = m[FRONT][i] + wet;
+        const float g = m[GRANULATION][i] / paint, age = m[AGE][i] / wet;
+        const float grain = 0.86f + 0.5f * g * (hollow - 0.5f) + 0.2f * spot;
+        const float tip = m[LINE][i] * fl_bell(1.3f * (m[EDGE][i] - 0.6f));
+        const float front =
+            MIN(fl_ease(0, 1, m[EDGE][i]) * (m[FRONT][i] * grain + tip) / fronts, 1);
+        const float inside = m[DEPTH][i] / stains / (FRAYED_PX * sheet->px);
+        const float late = 0.3f * (hollow + spot) + 0.4f * inside;
+        const float film = m[FILM][i] * fl_ease(0, 0.9f, (1.2f + 3.6f * late - age) / 1.6f);
+        const float coarse = CLAMP(1 - 0.55f * g + 1.1f * g * (hollow - 0.5f), 0.1f, 1.4f);
+        const float pigment = m[STAIN][i] * left_of(sheet, age, hollow) * coarse;
+        const float frayed = frayed_to(sheet, hollow, spot) * (1 - MIN(3 * front, 1));
+        const float sides = fl_ease(-0.5f, soft, (m[DEPTH][i] - frayed) * cell_px) / stains;
+        const float stain = MIN(sides * (film + pigment - film * pigment / stains), 1);
+        const float dense = STRENGTH * (1 - (1 - stain) * (1 - front)) / paint;
+        batch->through[0][i] = fl_fall(dense * m[INK][i]);
+        batch->through[1][i] = fl_fall(dense * m[INK + 1][i]);
+        batch->through[2][i] = fl_fall(dense * m[INK + 2][i]);
+    }
 }
+
+FL_FOR_EACH_CPU(find_light, shine_through, (const FlWetSheet *sheet, Batch *batch), (sheet, batch))
 
 /** The light that marks let through, as straight RGBA over the paper. Returns: true if any is
  * missing. */
@@ -360,27 +376,47 @@ static float place_of(const FlWetSheet *sheet, int px, int n_cells)
     return CLAMP(at, 0, (float)(n_cells - 1));
 }
 
+/** Adds px of row y to a batch, from px `first` on, until it is full. Returns: the next px. */
+static int fill_batch(const FlWetSheet *sheet, float (*cells)[N_CHANNELS], int y, int first,
+                      int end, Batch *batch)
+{
+    const FlRect page = sheet->page, near = fl_rect_grown(sheet->wet, 1, page);
+    int px = first;
+    for (batch->n = 0; px < end && batch->n < BATCH; px++) {
+        const float x = place_of(sheet, px - sheet->shift_x, page.width);
+        const int left = CLAMP((int)x, near.x, near.x + near.width - 1);
+        const float *a = cells[left], *b = cells[MIN(left + 1, near.x + near.width - 1)];
+        if (a[FRONTS] + a[STAINS] + b[FRONTS] + b[STAINS] <= 0)
+            continue;
+        const FlPaperGrains grain = grain_at(sheet, px - sheet->shift_x, y - sheet->shift_y);
+        const int i = batch->n++;
+        for (int c = 0; c < N_CHANNELS; c++)
+            batch->contents[c][i] = fl_wet_between(a[c], b[c], CLAMP(x - (float)left, 0, 1));
+        batch->px[i] = px;
+        batch->hollow[i] = share_of(grain.hollow), batch->spot[i] = share_of(grain.spot);
+    }
+    return px;
+}
+
 /** A row of px of the layer. Returns: true if any is marked. */
 static bool layer_row(const FlWetSheet *sheet, float (*cells)[N_CHANNELS], FlRect row,
                       const uint8_t paper[3], uint8_t *rgba)
 {
     const FlRect page = sheet->page, near = fl_rect_grown(sheet->wet, 1, page);
     const float y = place_of(sheet, row.y - sheet->shift_y, page.height);
+    const int end = row.x + row.width;
     bool any = false;
+    Batch batch;
     for (int x = near.x; x < near.x + near.width; x++)
         mix_cells(sheet, (FlPoint){x, (double)y}, cells[x]);
-    for (int px = row.x; px < row.x + row.width; px++) {
-        const float x = place_of(sheet, px - sheet->shift_x, page.width);
-        const int left = CLAMP((int)x, near.x, near.x + near.width - 1);
-        const float *a = cells[left], *b = cells[MIN(left + 1, near.x + near.width - 1)];
-        float m[N_CHANNELS], through[3];
-        if (a[FRONTS] + a[STAINS] + b[FRONTS] + b[STAINS] <= 0)
-            continue;
-        for (int c = 0; c < N_CHANNELS; c++)
-            m[c] = fl_wet_between(a[c], b[c], CLAMP(x - (float)left, 0, 1));
-        shine_through(sheet, m, grain_at(sheet, px - sheet->shift_x, row.y - sheet->shift_y),
-                      through);
-        any = write_px(through, paper, rgba + 4 * (size_t)(px - row.x)) || any;
+    for (int px = row.x; px < end;) {
+        px = fill_batch(sheet, cells, row.y, px, end, &batch);
+        find_light(sheet, &batch);
+        for (int i = 0; i < batch.n; i++) {
+            const float through[3] = {batch.through[0][i], batch.through[1][i],
+                                      batch.through[2][i]};
+            any = write_px(through, paper, rgba + 4 * (size_t)(batch.px[i] - row.x)) || any;
+        }
     }
     return any;
 }
