@@ -302,8 +302,7 @@ bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char
                            const char *value, GError **error)
 {
     const FlOption *option = is_section(section) ? option_of(section, key) : NULL;
-    if (!option || is_output(option) || !is_plain(value) || strlen(value) > LONGEST_VALUE ||
-        !g_utf8_validate(value, -1, NULL)) {
+    if (!option || is_output(option) || !is_plain(value) || strlen(value) > LONGEST_VALUE) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "[%s] %s: cannot be set here, or the value is not valid text", section, key);
         return false;

@@ -28,8 +28,7 @@ struct FlLiveFilm {
     gint64 told;         // last progress, microseconds
 };
 
-/* ---- the options of the command line ----------------------------------------------------------
- */
+/* ---- the options of the command line ------------------------------------------------------- */
 
 /* An option of the command line that is not in the config, which has all others. */
 static bool is_forwarded(const FlOption *option, const FlRenderOptions *options)
@@ -73,8 +72,7 @@ static bool set_options(FlLiveFilm *film, GError **error)
     return true;
 }
 
-/* ---- calls of the film, in its thread ---------------------------------------------------------
- */
+/* ---- calls of the film, in its thread ------------------------------------------------------ */
 
 /* A line for the main thread, or a job that has ended. */
 typedef struct Line {
@@ -137,8 +135,7 @@ static void on_reads(const char *path, void *data)
     send(&(Line){film, NULL, film->calls.reads, g_strdup(path)});
 }
 
-/* ---- a job ------------------------------------------------------------------------------------
- */
+/* ---- a job --------------------------------------------------------------------------------- */
 
 /* Makes frames of a Lottie animation; *input becomes their folder. */
 static bool make_frames(FlLiveFilm *film, char **input, GError **error)
@@ -226,7 +223,6 @@ static void append_region(GString *json, const FlFilmRegion *region)
     g_autofree char *style = region->style ? g_path_get_basename(region->style) : NULL;
     fl_json_begin(json, NULL, '{');
     fl_json_text(json, "name", region->name);
-    fl_json_text(json, "label", region->layer);
     fl_json_text(json, "paint", region->paint);
     fl_json_text(json, "colour", colour);
     fl_json_text(json, "style", style);
@@ -318,8 +314,7 @@ static bool do_job(FlLiveFilm *film, GError **error)
            (work != FL_LIVE_DRAWING || make_picture(film, FL_LIVE_MAP, error));
 }
 
-/* ---- the thread -------------------------------------------------------------------------------
- */
+/* ---- the thread ---------------------------------------------------------------------------- */
 
 static void *run(void *data)
 {

@@ -105,23 +105,18 @@ static void append_command(GString *json, const Live *live)
     fl_json_text(json, "command", line->str);
 }
 
-/* A choice that a button would take back or make again. */
-static void append_choice(GString *json, const char *name, char **choice)
-{
-    g_autofree char *words = choice ? g_strdup_printf("%s: %s", choice[0], choice[1]) : NULL;
-    fl_json_text(json, name, words);
-}
-
 /* All that the page shows besides the film and its pictures; to be freed. */
 static char *state_of(const Live *live)
 {
     g_autofree char *name = g_path_get_basename(fl_live_config_path(live->config));
+    char **undo = fl_live_config_choice(live->config, -1);
+    char **redo = fl_live_config_choice(live->config, 1);
     GString *json = g_string_new("{\"state\":{");
     fl_json_number(json, "generation", live->generation, true);
     fl_json_text(json, "config", fl_live_config_text(live->config));
     fl_json_text(json, "file", name);
-    append_choice(json, "undo", fl_live_config_choice(live->config, -1));
-    append_choice(json, "redo", fl_live_config_choice(live->config, 1));
+    fl_json_text(json, "undo", undo ? undo[1] : NULL); // the keys
+    fl_json_text(json, "redo", redo ? redo[1] : NULL);
     append_command(json, live);
     g_string_append(json, ",\"messages\":[");
     for (guint k = 0; k < live->messages->len; k++)
