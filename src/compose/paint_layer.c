@@ -52,7 +52,7 @@ static void find_turn(FlColouring *colouring, const FlMixture *mixture, float hu
     float lab[3];
     fl_lab(fill, lab);
     const float chroma = sqrtf(lab[1] * lab[1] + lab[2] * lab[2]);
-    const float strength = (1 - white) * 3 * hue * CLAMP(.25f + chroma / 60, .3f, 1.25f);
+    const float strength = (1 - white) * 3 * hue * CLAMP(.25f + chroma / 60, .3f, 1);
     for (int c = 0; c < 3; c++)
         colouring->turn[c] = strength * mixture->turn[c] + white * shadow[c];
     for (int k = 0; k < 2; k++) {

@@ -113,21 +113,23 @@ static inline float ragged_at(const Brush *brush, float px, float py)
  * from which fine tongues run on the way that the water went. */
 static inline float front_at(const Brush *brush, const Fields *slow, int i, float ragged)
 {
-    const float away = slow->plane[FL_WASH_FRONT][i], past = away + 3 * ragged;
+    const float away = slow->plane[FL_WASH_FRONT][i];
+    const float strength = MAX(slow->plane[FL_WASH_FRONTS][i], 0);
+    const float past = away + (4 - 2 * MIN(strength, 1)) * ragged;
     const float fine =
         ragged_at(brush, 2.3f * slow->plane[FL_WASH_X][i], 2.3f * slow->plane[FL_WASH_Y][i]);
     const float tongue = 4 + 32 * MAX(fine + .2f, 0), beyond = MAX(past, 0);
     const float line = .5f * fl_smooth(1 - past / tongue) + .2f * fl_decay(beyond * .08f) +
                        .4f * fl_decay(beyond * .6f);
     const float front = past < 0 ? fl_decay(MAX(-past, 0) * .7f) : line;
-    return (away < -12) | (away > 60) ? 0 : MAX(slow->plane[FL_WASH_FRONTS][i], 0) * front;
+    return (away < -12) | (away > 60) ? 0 : strength * front;
 }
 
 /* From -.5 on the side that water flooded to .5 beyond its front. */
 static inline float side_at(float away, float strength, float ragged)
 {
     const float lost = fl_clamp(1 - strength, 0, 1);
-    const float lost_px = 2 + 78 * lost, past = away + (3 + 17 * lost) * ragged;
+    const float lost_px = 2 + 78 * lost, past = away + (2 + 18 * lost) * ragged;
     return fl_smooth(.5f + past / lost_px) - .5f;
 }
 
@@ -164,7 +166,7 @@ static inline float tone_at(const Brush *brush, const Fields *slow, int i, float
     const float heavy = .05f * MAX(slow->plane[FL_WASH_HUE][i], 0);
     const float rough = lines * (slow->plane[FL_WASH_ROUGH][i] + heavy) * ragged;
     *hue = slow->plane[FL_WASH_HUE][i] + .4f * MAX(load, -1) + .3f * front + 3 * rough;
-    return slow->plane[FL_WASH_TONE][i] + .31f * load + .36f * front + rough +
+    return slow->plane[FL_WASH_TONE][i] + .29f * load + .36f * front + rough +
            .28f * MAX(style->tide, style->blooms) * lines * side;
 }
 

@@ -168,10 +168,10 @@ static void find_near(const Places *at, const float *away, Places *near, int *wh
 /* Fronts at which water stopped: drying lines and rims of blooms, as lobes between cusps. */
 static void find_fronts(const FlWash *wash, const Places *at, Values values)
 {
-    static const float place[2] = {170, 170}, wide[2] = {34, 34};
+    static const float place[2] = {170, 170}, wide[2] = {34, 34}, parts[2] = {70, 70};
     float *all = values[FL_WASH_FRONT], *fronts = values[FL_WASH_FRONTS];
     float away[FL_NOISE_ROW], bloom[FL_NOISE_ROW], lobe[FL_NOISE_ROW];
-    float place_of[FL_NOISE_ROW];
+    float place_of[FL_NOISE_ROW], found[FL_NOISE_ROW];
     int which[FL_NOISE_ROW];
     Places near, front;
     find_front(wash, at, all, bloom);
@@ -185,13 +185,15 @@ static void find_fronts(const FlWash *wash, const Places *at, Values values)
     move_to_front(wash, &near, away, &front);
     noise_at(fl_key(wash->key, KEY_LOBES), &front, wide, 0, 1, 1, lobe);
     noise_at(fl_key(wash->key, KEY_FRONTS), &near, place, 0, 1, 1, place_of);
+    noise_at(fl_key(wash->key, KEY_FRONTS + 100), &front, parts, 0, 1, 1, found);
     for (int k = 0; k < near.n; k++) {
         const int i = which[k];
         const float ends = fl_smooth(3 - 3 * fabsf(all[i]) / NEAR_PX);
-        all[i] = away[k] - 10 * (fabsf(lobe[k]) - .25f);
+        const float here = fl_smooth(.6f + 1.5f * found[k]); // 0 where the front is lost
+        all[i] = away[k] - (14 - 8 * here) * (fabsf(lobe[k]) - .25f);
         fronts[i] = wash->style.tide * fl_smooth((place_of[k] + .05f) / .45f) * (1 - bloom[i]) +
                     wash->style.blooms * fl_smooth(.2f + place_of[k]) * bloom[i];
-        fronts[i] *= ends * fl_smooth(.6f + 1.3f * lobe[k]); // found here and lost there
+        fronts[i] *= ends * here;
         const float pull = .85f * fl_smooth(1.5f - fabsf(away[k]) / 24);
         values[FL_WASH_X][i] += pull * (front.x[k] - near.x[k]);
         values[FL_WASH_Y][i] += pull * (front.y[k] - near.y[k]);

@@ -107,7 +107,9 @@ static void put_together(const FlWashField *field)
         wash->plane[FL_WASH_FRONTS][i] *= large * lines;
         const float middle = wash->plane[FL_WASH_CALM][i]; // the rim is found here and lost there
         const float lost = .9f * fl_smooth(.65f + 1.2f * wash->plane[FL_WASH_DRY][i]);
-        const float calm = wash->style.calm * share_at(field, FL_MAP_CALM, i);
+        const float more = fl_clamp(3.2f * wash->plane[FL_WASH_DRY][i], -1, 1);
+        const float calm = share_at(field, FL_MAP_CALM, i) * wash->style.calm *
+                           (1 + more * (1 - wash->style.calm)); // marks stay here and there
         wash->plane[FL_WASH_CALM][i] =
             MIN(washed * wash->style.wash, 1) * (calm * middle + lost * (1 - middle));
     }
@@ -180,13 +182,14 @@ static void add_region(FlWashField *field, int region)
     }
 }
 
-/* Passes lie along the axis of the first of the regions, in round ones across the light's slope, or
- * as an image of directions has it where it was first seen. */
+/* Passes lie along the axis of the first of the regions, in round ones across the light's slope as
+ * the hand turns for each fill, or as an image of directions has it where it was first seen. */
 static void find_along(FlWashField *field)
 {
     const FlAnchor *at = &field->wash->painted->anchor;
     const float *light = field->light;
-    float angle = atan2f(.35f * light[1] - .1f * light[0], .9f);
+    FlRng rng = {fl_key(field->wash->key, 2)};
+    float angle = atan2f(.35f * light[1] - .1f * light[0], .9f) + 1.4f * fl_rng_float(&rng) - .7f;
     if (!isnan(at->axis))
         angle = at->axis * (float)(G_PI / 180);
     if (field->input->directions.image)

@@ -52,7 +52,7 @@ static void find_play(const FlEvent *event, uint64_t key, float x_px, float y_px
     float sum = 0, n = 0;
     for (int k = 0; k < FL_MAX_PIGMENTS; k++) {
         touch->play[k] = 0;
-        if (event->play <= 0 || event->load[k] + event->deposit[k] <= 0)
+        if (event->play <= 0 || event->load[k] <= 0)
             continue;
         touch->play[k] =
             fl_noise_octaves(fl_key(key, KEY_PLAY + (uint64_t)k), x_px / event->streak_px,
@@ -191,17 +191,6 @@ static void pour(FlSheet *sheet, const Moment *now)
     }
 }
 
-static void lay_down(FlSheet *sheet, const Moment *now)
-{
-    const size_t cells = (size_t)sheet->width * sheet->height;
-    float *cover = sheet->spare[0], *taken = sheet->spare[1];
-    find_cover(sheet, now, cover, taken);
-    for (int k = 0; k < sheet->n_pigments; k++)
-        for (size_t i = 0; i < cells; i++)
-            sheet->floating[k][i] += now->event->deposit[k] * cover[i] * taken[i] *
-                                     now->touches[i].load * now->touches[i].play[k];
-}
-
 /* Velocity over a face between two cells: down the slope of the stroke's first outline, fastest
  * near the rim of the puddle, 0 outside, modulated by the paper. The slope of the puddle itself
  * would gather pigment wherever the paper slows it down. The velocity starts at 0 on the line
@@ -255,8 +244,6 @@ void fl_brush_apply(const FlBrush *brush, FlSheet *sheet, float before, float af
                             event->sweep * event->growth * (after - before) * scale, scale};
         if (!starts && !(event->from < before && event->until > before))
             continue;
-        if (starts)
-            lay_down(sheet, &now);
         if (now.speed > 0)
             sweep(sheet, &now);
         pour(sheet, &now);

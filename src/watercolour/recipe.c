@@ -27,7 +27,6 @@ static FlRecipe *defaults(void)
         .warm_up = 1,
         .seed = 1,
         .mask_threshold = 0.02f,
-        .mask_margin = 3,
         .mask_blur = 1,
         .paper = {.colour = {244, 239, 228},
                   .grain_px = 4,
@@ -85,7 +84,6 @@ static const FlTableKey recipe_keys[] = {
     {"melt", FL_KEY_OF(NUMBER, FlRecipe, melt), 0, 1},
     {"mask-threshold", FL_KEY_OF(NUMBER, FlRecipe, mask_threshold), 1e-4, 10},
     {"mask-blur", FL_KEY_OF(NUMBER, FlRecipe, mask_blur), 0, 50},
-    {"mask-margin", FL_KEY_OF(NUMBER, FlRecipe, mask_margin), 0, 50},
 };
 
 /* size sets both. */
@@ -152,7 +150,6 @@ static const FlTableKey event_keys[] = {
     {"water", FL_KEY_OF(NUMBER, FlEvent, water), 0, 1},
     {"rate", FL_KEY_OF(NUMBER, FlEvent, rate), 0, 1},
     {"load", FL_KEY_OF(NUMBER, FlEvent, load), 0, 10, 1, FL_MAX_PIGMENTS},
-    {"deposit", FL_KEY_OF(NUMBER, FlEvent, deposit), 0, 10, 1, FL_MAX_PIGMENTS},
     {"streaks", FL_KEY_OF(NUMBER, FlEvent, streaks), 0, 1},
     {"streak-size", FL_KEY_OF(NUMBER, FlEvent, streak_px), 1, 1000},
     {"play", FL_KEY_OF(NUMBER, FlEvent, play), 0, 1},

@@ -44,8 +44,7 @@ typedef struct FlEvent {
     float water;                     // saturation up to which the brush fills the paper, 0..1
     float rate;                      // share of the missing water given per step, 0..1
     float load[FL_MAX_PIGMENTS];     // pigment per unit of water, >= 0
-    float deposit[FL_MAX_PIGMENTS];  // pigment laid down at once, per cell, >= 0
-    float streaks, streak_px;        // amplitude of streaks in load and deposit, 0..1; their size
+    float streaks, streak_px;        // amplitude of streaks in load, 0..1; their size
     float play;                      // unevenness of their mixture, 0..1, streak_px in size
     float bristles;       // amplitude of the lines that bristles draw along the stroke, 0..1
     float bristle_px[2];  // width and length of such a line
@@ -83,8 +82,8 @@ typedef struct FlRecipe {
     float melt;            // as of FlStyle
     int steps[2], warm_up; // steps before the second and before the last frame; before the first
     int seed;
-    float mask_threshold, mask_margin; // least thickness of paint; bare margin, px
-    float mask_blur;                   // radius over which the thickness is averaged, px
+    float mask_threshold; // least thickness of paint
+    float mask_blur;      // radius over which the thickness is averaged, px
     FlFrontStyle front;
     FlWashStyle wash;
     FlSheetStyle sheet;

@@ -17,7 +17,8 @@ typedef struct Extract {
     float margin;    // margin of the mask around the paint
 } Extract;
 
-#define FAR 1e9f // squared cells; more than any picture has
+#define MARGIN_PX 3 // of bare paper around the paint
+#define FAR 1e9f    // squared cells; more than any picture has
 
 /* A box blur of one line; the window is clipped at the ends. */
 static void blur_line(float *line, int n, ptrdiff_t stride, int radius, float *copy)
@@ -234,7 +235,7 @@ static bool find_mask(FlScan *scan, const FlSheet *sheet, const FlRecipe *recipe
             thickness[i] += recipe->flow.thickness * (float)pigment_at(sheet, k, i);
     const int scale = cells_per_px(sheet, recipe), area = scale * scale;
     const Extract extract = {recipe->mask_threshold, (int)(recipe->mask_blur * (float)scale + 0.5f),
-                             60 * area, 60 * area, recipe->mask_margin * (float)scale};
+                             60 * area, 60 * area, MARGIN_PX * (float)scale};
     if (!extract_mask(thickness, sheet->width, sheet->height, &extract, distance, error))
         return false;
     draw_mask(scan, distance, sheet->width / scan->width);

@@ -9,9 +9,8 @@ FlSheet *fl_sheet_new(int width, int height, int n_pigments, GError **error)
     const size_t cells = (size_t)width * height;
     const size_t faces = (size_t)(width + 1) * (height + 1);
     float **grids[] = {&sheet->relief, &sheet->capacity, &sheet->pin, &sheet->s};
-    float **staggered[] = {&sheet->open_u,   &sheet->open_v,   &sheet->u,
-                           &sheet->v,        &sheet->flux_u,   &sheet->flux_v,
-                           &sheet->spare[0], &sheet->spare[1], &sheet->spare[2]};
+    float **staggered[] = {&sheet->open_u, &sheet->open_v, &sheet->u,        &sheet->v,
+                           &sheet->flux_u, &sheet->flux_v, &sheet->spare[0], &sheet->spare[1]};
     for (size_t i = 0; i < G_N_ELEMENTS(grids); i++)
         if (!(*grids[i] = fl_alloc(cells, sizeof(float), "a sheet of paper", error)))
             return NULL;
@@ -35,10 +34,9 @@ void fl_sheet_free(FlSheet *sheet)
 {
     if (!sheet)
         return;
-    float *grids[] = {sheet->relief,  sheet->capacity, sheet->pin,      sheet->open_u,
-                      sheet->open_v,  sheet->u,        sheet->v,        sheet->s,
-                      sheet->flux_u,  sheet->flux_v,   sheet->spare[0], sheet->spare[1],
-                      sheet->spare[2]};
+    float *grids[] = {sheet->relief, sheet->capacity, sheet->pin,      sheet->open_u,
+                      sheet->open_v, sheet->u,        sheet->v,        sheet->s,
+                      sheet->flux_u, sheet->flux_v,   sheet->spare[0], sheet->spare[1]};
     for (size_t i = 0; i < G_N_ELEMENTS(grids); i++)
         free(grids[i]);
     for (int k = 0; k < sheet->n_pigments; k++) {

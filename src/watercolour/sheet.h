@@ -26,7 +26,7 @@ typedef struct FlSheet {
     float *floating[FL_MAX_PIGMENTS]; // g
     float *settled[FL_MAX_PIGMENTS];  // d
     float *flux_u, *flux_v;           // flux over the faces in the current pass
-    float *spare[3];      // for a pass that reads the previous field and writes a new one
+    float *spare[2];      // for a pass that reads the previous field and writes a new one
     float *concentration; // of the current pigment in the water; a row of 0 before and after
 } FlSheet;
 
