@@ -350,6 +350,22 @@ static void a_mask_is_the_whole_shape(void)
     g_assert_cmpint(area, ==, 3200);
 }
 
+/** Two halves of a square of one colour that meet amid a column of pixels. */
+static void shapes_of_one_colour_meet_without_a_seam(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_svg(folder, "1.svg",
+                       "<rect width=\"50.5\" height=\"100\" fill=\"red\"/>"
+                       "<rect x=\"50.5\" width=\"49.5\" height=\"100\" fill=\"red\"/>"));
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, 0, NULL);
+    uint8_t mask[10000] = {0};
+    fl_draw_list_mask(draws, 0, 100, 100, mask);
+    for (int p = 0; p < 10000; p++)
+        g_assert_cmpint(mask[p], >=, 254);
+}
+
 /** The number of pixels that are wholly inside the only shape. */
 static int inside_of(const char *shape)
 {
@@ -786,6 +802,7 @@ int main(int argc, char **argv)
     TEST("rings-of-two-colours-are-regions-of-their-own",
          rings_of_two_colours_are_regions_of_their_own);
     TEST("a-mask-is-the-whole-shape", a_mask_is_the_whole_shape);
+    TEST("shapes-of-one-colour-meet-without-a-seam", shapes_of_one_colour_meet_without_a_seam);
     TEST("what-fades-is-inside-as-far-as-it-is-seen", what_fades_is_inside_as_far_as_it_is_seen);
     TEST("hairlines-are-drawn-even-where-strokes-are-painted",
          hairlines_are_drawn_even_where_strokes_are_painted);

@@ -265,7 +265,8 @@ static bool add_by_hand(const Stage *stage, int i, const uint8_t solid[256], con
     return true;
 }
 
-/** Adds one flat step to a coverage, dividing by its opacity. */
+/** Adds one flat step to a coverage, dividing by its opacity. Steps of one paint that share an edge
+ * fill its pixels together, without a seam. */
 static bool add_flat(const Stage *stage, int i, const Target *target, GError **error)
 {
     const FlDrawStep *step = &stage->frame->step[i];
@@ -281,7 +282,7 @@ static bool add_flat(const Stage *stage, int i, const Target *target, GError **e
         uint8_t *out = target->coverage + target_pixel(target, box.x, y);
         for (int x = 0; x < box.width; x++)
             if (in[x])
-                out[x] = fl_over(solid[in[x]], out[x]);
+                out[x] = (uint8_t)MIN(255, solid[in[x]] + out[x]);
     }
     fl_surface_wipe(stage->coverage, box);
     return true;
