@@ -192,91 +192,6 @@ static char *between_paths(const char *from, const char *to, double q)
     return g_strdup_printf("path(\"%s\")", data ? data : q < .5 ? a : b);
 }
 
-/** A value of translate, rotate or scale; for "none" the other one with numbers that change
- * nothing. To be freed. */
-static char *one_transform(const char *value, const char *other, const char *neutral)
-{
-    GString *text = g_string_new(NULL);
-    if (*value && strcmp(value, "none") != 0)
-        return g_string_free(g_string_assign(text, value), FALSE);
-    while (*other) {
-        char *end = (char *)other;
-        if (!g_ascii_isspace(*other))
-            g_ascii_strtod(other, &end);
-        if (end > other)
-            g_string_append(text, neutral);
-        else
-            g_string_append_c(text, *end++);
-        other = end;
-    }
-    return g_string_free(text, FALSE);
-}
-
-/** A value of translate or scale with as many numbers as another one; to be freed. */
-static char *filled_up(const char *property, const char *value, const char *other)
-{
-    g_auto(GStrv) own = fl_css_split(value, ' '), others = fl_css_split(other, ' ');
-    GString *text = g_string_new(value);
-    const bool scale = strcmp(property, "scale") == 0;
-    for (guint n = g_strv_length(own); n > 0 && n < g_strv_length(others); n++)
-        g_string_append_printf(text, " %s", scale && n < 2 ? own[0] : scale ? "1" : "0px");
-    return g_string_free(text, FALSE);
-}
-
-static char *between_transforms(const char *property, const char *from, const char *to, double q)
-{
-    const char *neutral = strcmp(property, "scale") == 0 ? "1" : "0";
-    g_autofree char *a = one_transform(from, to, neutral), *b = one_transform(to, from, neutral);
-    g_autofree char *one = filled_up(property, a, b), *other = filled_up(property, b, a);
-    return fl_interpolate(one, other, q);
-}
-
-/** The i-th word of a filter function's arguments, to be freed; of one that is missing, a word that
- * changes nothing in place of the other one. */
-static char *filter_word(const char *name, char **own, char **others, guint i)
-{
-    static const char *const whole[] = {"brightness", "contrast", "opacity", "saturate", NULL};
-    double number;
-    if (own && i < g_strv_length(own))
-        return g_strdup(own[i]);
-    const char *other = i < g_strv_length(others) ? others[i] : "0";
-    return g_strdup(fl_number_read(&other, &number) ? (g_strv_contains(whole, name) ? "1" : "0")
-                                                    : "transparent");
-}
-
-/** A filter function between two, of which one may be missing; NULL if they are not of a kind. */
-static char *between_functions(const char *from, const char *to, double q)
-{
-    g_autofree char *name = NULL, *name_to = NULL, *inside = NULL, *inside_to = NULL;
-    if ((from && !fl_css_call(from, &name, &inside)) ||
-        (to && !fl_css_call(to, &name_to, &inside_to)) || (from && to && strcmp(name, name_to)))
-        return NULL;
-    g_auto(GStrv) a = from ? fl_css_split(inside, ' ') : NULL;
-    g_auto(GStrv) b = to ? fl_css_split(inside_to, ' ') : NULL;
-    const char *kind = from ? name : name_to;
-    GString *out = g_string_new(kind);
-    for (guint i = 0; i < MAX(a ? g_strv_length(a) : 0, b ? g_strv_length(b) : 0); i++) {
-        g_autofree char *x = filter_word(kind, a, b, i), *y = filter_word(kind, b, a, i);
-        g_autofree char *word = fl_interpolate(x, y, q);
-        g_string_append_printf(out, "%c%s", i ? ' ' : '(', word ? word : q < .5 ? x : y);
-    }
-    return g_string_free(g_string_append_c(out, ')'), FALSE);
-}
-
-static char *between_filters(const char *from, const char *to, double q)
-{
-    g_auto(GStrv) a = fl_css_split(strcmp(from, "none") == 0 ? "" : from, ' ');
-    g_auto(GStrv) b = fl_css_split(strcmp(to, "none") == 0 ? "" : to, ' ');
-    const guint n = g_strv_length(a), m = g_strv_length(b);
-    g_auto(GStrv) list = g_new0(char *, MAX(n, m) + 1);
-    for (guint i = 0; i < MAX(n, m); i++) {
-        list[i] = between_functions(i < n ? a[i] : NULL, i < m ? b[i] : NULL, q);
-        if (!list[i])
-            return NULL;
-    }
-    return list[0] ? g_strjoinv(" ", list) : NULL;
-}
-
 /** A value with its variables put in; to be freed. */
 static char *substituted(const char *value, const FlCssContext *context)
 {
@@ -318,10 +233,10 @@ static char *between(const GArray *frames, const char *property, double p, const
     else if (strcmp(property, "d") == 0)
         text = between_paths(from, to, q);
     else if (strcmp(property, "filter") == 0)
-        text = between_filters(from, to, q);
+        text = fl_interpolate_functions(from, to, q, ' ');
     else if (strcmp(property, "translate") == 0 || strcmp(property, "rotate") == 0 ||
              strcmp(property, "scale") == 0)
-        text = between_transforms(property, from, to, q);
+        text = fl_interpolate_words(property, from, to, q);
     else if (strcmp(property, "visibility") == 0 && q > 0 && q < 1)
         text = g_strdup(strcmp(from, "visible") == 0 ? from : to);
     else if (*from && *to && (typed || strncmp(property, "--", 2) != 0))
@@ -350,8 +265,9 @@ static GPtrArray *properties_of(const GArray *frames)
 static char *sum_of(const char *property, const char *base, char *value)
 {
     const bool list = strcmp(property, "transform") == 0;
-    g_autofree char *full =
-        strcmp(property, "translate") == 0 ? filled_up(property, base, value) : g_strdup(base);
+    const bool across =
+        strcmp(property, "translate") == 0 && strchr(value, ' ') && !strchr(base, ' ');
+    g_autofree char *full = g_strconcat(base, across ? " 0px" : "", NULL);
     char *sum = list ? g_strconcat(strcmp(base, "none") == 0 ? "" : base, " ",
                                    strcmp(value, "none") == 0 ? "" : value, NULL)
                      : fl_add_values(full, value, 1);

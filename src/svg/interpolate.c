@@ -272,6 +272,82 @@ double fl_value_distance(const char *a, const char *b)
     return text ? distance : 1;
 }
 
+/* ---- lists ----------------------------------------------------------------------------------- */
+
+/** The i-th word of a function or property `kind`, to be freed; of one that is missing, a word that
+ * changes nothing in place of the other one. */
+static char *word_at(const char *kind, char **own, char **others, guint i)
+{
+    static const char *const whole[] = {"brightness", "contrast", "opacity",
+                                        "saturate",   "scale",    NULL};
+    const guint n = g_strv_length(own);
+    const char *other = n <= i ? others[i] : NULL;
+    double number;
+    if (n > i || (n == 1 && strcmp(kind, "scale") == 0)) // scale(x) is scale(x, x)
+        return g_strdup(own[MIN(i, n - 1)]);
+    if (strcmp(kind, "drop-shadow") == 0 && !fl_number_read(&other, &number))
+        return g_strdup("transparent");
+    return g_strdup(g_strv_contains(whole, kind) || g_str_has_prefix(kind, "scale") ? "1" : "0");
+}
+
+/** Appends the words between two lists. Returns: false if any have no value between them. */
+static bool mix_words(GString *out, const char *kind, char **a, char **b, double p,
+                      const char *separator)
+{
+    bool mixed = true;
+    for (guint i = 0; i < MAX(g_strv_length(a), g_strv_length(b)) && mixed; i++) {
+        g_autofree char *x = word_at(kind, a, b, i), *y = word_at(kind, b, a, i);
+        g_autofree char *word = fl_interpolate(x, y, p);
+        mixed = word != NULL;
+        g_string_append_printf(out, "%s%s", i ? separator : "", mixed ? word : "");
+    }
+    return mixed;
+}
+
+char *fl_interpolate_words(const char *property, const char *a, const char *b, double p)
+{
+    g_auto(GStrv) x = fl_css_split(strcmp(a, "none") == 0 ? "" : a, ' ');
+    g_auto(GStrv) y = fl_css_split(strcmp(b, "none") == 0 ? "" : b, ' ');
+    GString *out = g_string_new(NULL);
+    const bool mixed = mix_words(out, property, x, y, p, " ");
+    return g_string_free(out, !mixed || out->len == 0);
+}
+
+/** Cuts the function at *s off a list; the end of the list is a function without a name. Returns:
+ * false if something else is there. */
+static bool take_function(const char **s, char separator, char **name, char ***words)
+{
+    const char *open = *s + fl_css_identifier(*s);
+    const char *close = *open == '(' ? fl_css_find(open + 1, ")") : open;
+    const bool end = !**s || strcmp(*s, "none") == 0;
+    g_autofree char *inside =
+        end || *close != ')' ? g_strdup("") : g_strndup(open + 1, (gsize)(close - open) - 1);
+    *name = g_ascii_strdown(*s, end ? 0 : open - *s);
+    *words = fl_css_split(inside, separator);
+    *s = end ? *s + strlen(*s) : fl_css_space(*close ? close + 1 : close);
+    return end || (*open == '(' && *close == ')');
+}
+
+char *fl_interpolate_functions(const char *a, const char *b, double p, char separator)
+{
+    const char *s = fl_css_space(a), *t = fl_css_space(b);
+    GString *out = g_string_new(NULL);
+    bool mixed = true;
+    while (mixed && (*s || *t)) {
+        g_autofree char *name = NULL, *other = NULL;
+        g_auto(GStrv) x = NULL, y = NULL;
+        mixed = take_function(&s, separator, &name, &x) && take_function(&t, separator, &other, &y);
+        const char *kind = *name ? name : other;
+        g_string_append_printf(out, "%s%s(", out->len ? " " : "", kind);
+        mixed = mixed && (!*name || !*other || strcmp(name, other) == 0) &&
+                !g_str_has_prefix(kind, "matrix") &&
+                mix_words(out, kind, x, y, p, separator == ',' ? ", " : " ");
+        g_string_append_c(out, ')');
+    }
+    mixed = mixed && out->len > 2; // not "none" twice
+    return g_string_free(out, !mixed);
+}
+
 /* ---- transforms ------------------------------------------------------------------------------ */
 
 /** A transform in the plane, taken apart: translation, turn, scale and skew. */
@@ -315,79 +391,8 @@ static char *mix_matrices(const char *a, const char *b, double p, const FlCssUni
     return fl_affine_text(&m);
 }
 
-/** Cuts the function at *s off a list: its name, and the arguments with every part said. */
-static bool take_function(const char **s, char **name, char ***arguments)
-{
-    const char *open = *s + fl_css_identifier(*s);
-    const char *close = *open == '(' ? fl_css_find(open + 1, ")") : open;
-    if (*open != '(' || *close != ')')
-        return false;
-    g_autofree char *inside = g_strndup(open + 1, (gsize)(close - open) - 1);
-    *name = g_ascii_strdown(*s, open - *s);
-    *arguments = fl_css_split(inside, ',');
-    *s = fl_css_space(close + 1);
-    return true;
-}
-
-/** Writes the function between two of one name; `from_none`: a is the neutral function. */
-static bool mix_function(GString *out, const char *name, char **a, char **b, double p)
-{
-    const bool scale = g_str_has_prefix(name, "scale");
-    const guint n = MAX(g_strv_length(a), g_strv_length(b));
-    g_string_append_printf(out, "%s%s(", out->len ? " " : "", name);
-    for (guint i = 0; i < n; i++) {
-        const char *rest =
-            scale ? NULL : "0px"; // translate(x) is translate(x, 0), scale(x) x twice
-        const char *va = i < g_strv_length(a) ? a[i] : rest ? rest : a[0];
-        const char *vb = i < g_strv_length(b) ? b[i] : rest ? rest : b[0];
-        g_autofree char *text = va && vb ? fl_interpolate(va, vb, p) : NULL;
-        if (!text)
-            return false;
-        g_string_append_printf(out, "%s%s", i ? ", " : "", text);
-    }
-    g_string_append_c(out, ')');
-    return true;
-}
-
-/** The neutral functions for a list: "translate(3px) scale(2)" gives translate(0px) scale(1). */
-static char *neutral(const char *list)
-{
-    GString *out = g_string_new(NULL);
-    for (const char *s = fl_css_space(list); *s;) {
-        g_autofree char *name = NULL;
-        g_auto(GStrv) arguments = NULL;
-        if (!take_function(&s, &name, &arguments) || g_str_has_prefix(name, "matrix")) {
-            g_string_assign(out, "matrix(1, 0, 0, 1, 0, 0)");
-            break;
-        }
-        g_string_append_printf(out, "%s%s(", out->len ? " " : "", name);
-        for (int i = 0; arguments[i]; i++)
-            g_string_append_printf(out, "%s%s", i ? ", " : "",
-                                   g_str_has_prefix(name, "scale")       ? "1"
-                                   : g_str_has_prefix(name, "translate") ? "0px"
-                                                                         : "0deg");
-        g_string_append_c(out, ')');
-    }
-    return g_string_free(out, FALSE);
-}
-
 char *fl_interpolate_transform(const char *a, const char *b, double p, const FlCssUnits *units)
 {
-    const bool none_a = !*a || strcmp(a, "none") == 0, none_b = !*b || strcmp(b, "none") == 0;
-    g_autofree char *from = none_a ? neutral(none_b ? "" : b) : g_strdup(a);
-    g_autofree char *to = none_b ? neutral(none_a ? "" : a) : g_strdup(b);
-    GString *out = g_string_new(NULL);
-    const char *s = fl_css_space(from), *t = fl_css_space(to);
-    bool matched = true;
-    while (matched && *s && *t) {
-        g_autofree char *name = NULL, *other = NULL;
-        g_auto(GStrv) x = NULL, y = NULL;
-        matched = take_function(&s, &name, &x) && take_function(&t, &other, &y) &&
-                  strcmp(name, other) == 0 && !g_str_has_prefix(name, "matrix") &&
-                  mix_function(out, name, x, y, p);
-    }
-    if (matched && !*s && !*t)
-        return g_string_free(out, FALSE);
-    g_string_free(out, TRUE);
-    return mix_matrices(from, to, p, units);
+    char *list = fl_interpolate_functions(a, b, p, ',');
+    return list ? list : mix_matrices(a, b, p, units);
 }

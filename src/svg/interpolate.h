@@ -25,6 +25,14 @@ char *fl_add_values(const char *a, const char *b, double n);
 /** The distance of two values, for even speed; 1 if it is unknown. */
 double fl_value_distance(const char *a, const char *b);
 
+/** The value of translate, rotate or scale at a share p; words that one of them lacks change
+ * nothing. To be freed; NULL: there is none between. */
+char *fl_interpolate_words(const char *property, const char *a, const char *b, double p);
+
+/** Likewise of lists of functions with the same names, of which one may be shorter; `separator`
+ * stands between their arguments. */
+char *fl_interpolate_functions(const char *a, const char *b, double p, char separator);
+
 /**
  * The transform at a share p between two lists of functions [CSS Transforms 1 §12]. Lists of other
  * functions are decomposed in a box of units->width x height. To be freed; NULL: not readable.

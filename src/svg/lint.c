@@ -202,6 +202,8 @@ static void check_values(const Lint *lint, const xmlNode *node)
     if (fl_is(node, "image") && (has_value(node, "image-rendering", "pixelated") ||
                                  has_value(node, "image-rendering", "crisp-edges")))
         warn(lint, node, "image-rendering is left out: the image is smoothed");
+    if (fl_is(node, "feFlood") && has_value(node, "result", FL_NO_BACKGROUND))
+        warn(lint, node->parent, "BackgroundImage is empty: filters cannot read what is below");
     if (fl_is(node, "clipPath") && has_value(node, "clipPathUnits", "objectBoundingBox") &&
         xmlHasProp((xmlNode *)node, (xmlChar *)"transform"))
         warn(lint, node, "the transform of a clip path in units of the box is applied in the box");

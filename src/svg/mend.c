@@ -65,36 +65,70 @@ static void mend_shadow(xmlNode *node, int number)
     fl_set_attribute(xmlNewChild(node, node->ns, (const xmlChar *)"feMergeNode", NULL), "in", in);
 }
 
-/* ---- colours of shadows ---------------------------------------------------------------------- */
+/* ---- inputs of filters ----------------------------------------------------------------------- */
 
-/** librsvg takes colours that are made from SourceAlpha in linear light for those of sRGB: a filter
- * with such steps gets the alpha of the picture as a step of its own. */
-static void mend_alpha(xmlNode *filter)
+/** Has the steps in a node read the step `name` in place of an input. Returns: true if any read it.
+ */
+static bool redirect(xmlNode *node, const char *input, const char *name)
 {
-    static const char name[] = "fl-alpha";
     static const char *const inputs[] = {"in", "in2"};
-    static const char *const colouring[] = {"feColorMatrix", "feComponentTransfer", NULL};
-    xmlNode *first = xmlFirstElementChild(filter);
-    bool colours = false, reads = false;
-    FL_EACH_ELEMENT (step, filter)
-        colours |= fl_is_one_of(step, colouring);
-    FL_EACH_ELEMENT (step, colours ? filter : NULL)
+    bool found = false;
+    FL_EACH_ELEMENT (step, node) {
         for (size_t i = 0; i < G_N_ELEMENTS(inputs); i++) {
             g_autoptr(xmlChar) in = fl_attribute(step, inputs[i]);
-            if (xmlStrEqual(in, (const xmlChar *)"SourceAlpha")) {
+            if (xmlStrEqual(in, (const xmlChar *)input)) {
                 fl_set_attribute(step, inputs[i], name);
-                reads = true;
+                found = true;
             }
         }
-    if (!reads)
-        return;
-    if (!xmlHasProp(first, (const xmlChar *)"in"))
+        found = redirect(step, input, name) || found;
+    }
+    return found;
+}
+
+/** Adds the step `name`, of the picture, to the start of a filter. */
+static xmlNode *add_input(xmlNode *filter, const char *kind, const char *name)
+{
+    xmlNode *first = xmlFirstElementChild(filter);
+    xmlNode *step = xmlNewDocNode(filter->doc, filter->ns, (const xmlChar *)kind, NULL);
+    if (!xmlHasProp(first, (const xmlChar *)"in")) // it was the picture
         fl_set_attribute(first, "in", "SourceGraphic");
-    xmlNode *alpha = xmlNewDocNode(filter->doc, filter->ns, (const xmlChar *)"feColorMatrix", NULL);
-    fl_set_attribute(alpha, "in", "SourceGraphic");
-    fl_set_attribute(alpha, "values", "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 1 0");
-    fl_set_attribute(alpha, "result", name);
-    xmlAddPrevSibling(first, alpha);
+    fl_set_attribute(step, "in", "SourceGraphic");
+    fl_set_attribute(step, "result", name);
+    return xmlAddPrevSibling(first, step);
+}
+
+/** The mode of a filter that only blends with the background, as old versions of Inkscape wrote
+ * them; NULL of others. To be freed with xmlFree(). */
+static xmlChar *blend_mode(const xmlNode *filter)
+{
+    xmlNode *only = xmlFirstElementChild((xmlNode *)filter);
+    if (!only || !fl_is(only, "feBlend") || xmlNextElementSibling(only))
+        return NULL;
+    g_autoptr(xmlChar) in = fl_attribute(only, "in"), in2 = fl_attribute(only, "in2");
+    const bool blends = xmlStrEqual(in2, (const xmlChar *)"BackgroundImage") &&
+                        (!in || xmlStrEqual(in, (const xmlChar *)"SourceGraphic"));
+    return blends ? fl_attribute(only, "mode") : NULL;
+}
+
+/**
+ * librsvg takes colours that are made from SourceAlpha in linear light for those of sRGB: a filter
+ * with such steps gets the alpha of the picture as a step of its own. The background is empty,
+ * since each shape is drawn by itself.
+ */
+static void mend_inputs(xmlNode *filter)
+{
+    static const char *const colouring[] = {"feColorMatrix", "feComponentTransfer", NULL};
+    g_autoptr(xmlChar) mode = blend_mode(filter);
+    bool colours = false;
+    FL_EACH_ELEMENT (step, filter)
+        colours |= fl_is_one_of(step, colouring);
+    if (colours && redirect(filter, "SourceAlpha", "fl-alpha"))
+        fl_set_attribute(add_input(filter, "feColorMatrix", "fl-alpha"), "values",
+                         "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 1 0");
+    const bool image = !mode && redirect(filter, "BackgroundImage", FL_NO_BACKGROUND);
+    if (redirect(filter, "BackgroundAlpha", FL_NO_BACKGROUND) || image)
+        fl_set_attribute(add_input(filter, "feFlood", FL_NO_BACKGROUND), "flood-opacity", "0");
 }
 
 /* ---- blurs of turned shapes ------------------------------------------------------------------ */
@@ -130,6 +164,16 @@ static void turn_blur(xmlNode *step, const FlAffine *m)
         if (a > -1e-9 && b > -1e-9)
             fl_set_numbers(step, "stdDeviation", (double[]){px * fmax(a, 0), px * fmax(b, 0)}, 2);
     }
+}
+
+/** Makes a filter that only blends with the background the blend mode of its element. */
+static void mend_blend(const Mend *m, xmlNode *node)
+{
+    const xmlNode *filter = referred_by(node, "filter", "filter", m->ids);
+    g_autoptr(xmlChar) mode = filter ? blend_mode(filter) : NULL;
+    g_autofree char *style = mode ? g_strdup_printf("filter:none;mix-blend-mode:%s", mode) : NULL;
+    if (style)
+        fl_declare(node, style);
 }
 
 /** librsvg turns the deviations of a blur across and down like a way: at 45 degrees it blurs in one
@@ -371,7 +415,7 @@ static void mend(Mend *m, xmlNode *node)
     if (fl_is(node, "feDropShadow"))
         mend_shadow(node, m->n_made++);
     else if (fl_is(node, "filter"))
-        mend_alpha(node);
+        mend_inputs(node);
     else if (fl_is_one_of(node, gradients))
         mend_gradient(node);
     else if (fl_is_one_of(node, with_points))
@@ -386,6 +430,7 @@ static void mend(Mend *m, xmlNode *node)
             continue;
         mend_words(child);
         mend(m, child);
+        mend_blend(m, child);
         mend_blur(m, child);
         if (!fl_is(child, "clipPath") && !fl_is(node, "clipPath"))
             mend_clip(child, m->ids);

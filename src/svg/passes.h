@@ -27,18 +27,11 @@ bool fl_images_check(xmlDoc *doc, const char *path, int number, GPtrArray *files
 /**
  * Rewrites what librsvg leaves out and a browser draws: <feDropShadow>, clips of clip paths,
  * gradients of no length, lists of points that break. Languages in a <switch> are resolved, and a
- * <mask> has no mask.
+ * <mask> has no mask. Filters that only blend with the background become blend modes; others read
+ * an empty one, by the name of FL_NO_BACKGROUND.
  */
+#define FL_NO_BACKGROUND "fl-no-background"
 void fl_document_mend(xmlDoc *doc);
-
-/* ---- filters that read the backdrop, as old versions of Inkscape wrote them ------------------ */
-
-/**
- * Removes BackgroundImage and BackgroundAlpha from filters, since each shape is drawn by itself
- * over a transparent page: a filter that only blends with the backdrop becomes mix-blend-mode of
- * its element; for others the backdrop is empty, with a warning.
- */
-void fl_document_drop_background(xmlDoc *doc, const char *path, int number, FlWarnings *warnings);
 
 /* ---- the fonts of its text ------------------------------------------------------------------- */
 

@@ -51,7 +51,6 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
     if (!fl_cascade(svg->doc, path, number, seconds, NULL, svg->files, warnings, error))
         return NULL;
     fl_document_mend(svg->doc);
-    fl_document_drop_background(svg->doc, path, number, warnings);
     fl_lint(svg->doc, path, number, warnings);
     if (!fl_images_check(svg->doc, path, number, svg->files, warnings, error))
         return NULL;
