@@ -31,7 +31,7 @@ static int wet_beside(uint8_t bare, float depth, float v, float u, int wet, int 
     g_auto(FlGuides) guides = {0};
     g_auto(FlCarried) carried = {0};
     uint8_t now[PIXELS], tones[PIXELS];
-    const FlDrying drying = {&guides, UNIT, SIDE, 1};
+    const FlDrying drying = {&guides, UNIT, SIDE, 1, 0, NULL};
     fill_guides(&guides, depth, v, u, bare);
     g_assert_true(fl_carried_init(&carried, SIDE, SIDE, NULL));
     for (int f = 0; f < frames; f++) {
@@ -80,7 +80,7 @@ static void new_paint_is_fresh_and_at_rest_is_dry_in_time(void)
     const int new = wet_after(20, 0, 0, -1, 1, &tone);
     g_assert_cmpint(tone, <, FL_TONE_ONE);
     g_assert_cmpint(wet_after(20, 0, 0, new, 3, &tone), >, FL_WET / 4);
-    g_assert_cmpint(wet_after(20, 0, 0, FL_WET, FL_DRYING_FRAMES, &tone), ==, 0);
+    g_assert_cmpint(wet_after(20, 0, 0, FL_WET, 36, &tone), ==, 0);
     g_assert_cmpint(tone, ==, FL_TONE_ONE);
 }
 
@@ -96,7 +96,7 @@ static void what_moves_is_damp_all_through(void)
 static void what_comes_into_view_is_no_fresher_than_what_was_in_view(void)
 {
     int tone;
-    const int in_view = wet_after(20, 0, SIDE, 0, FL_DRYING_FRAMES, &tone);
+    const int in_view = wet_after(20, 0, SIDE, 0, 36, &tone);
     g_assert_cmpint(wet_after(20, 0, SIDE, -1, 1, &tone), ==, in_view);
     g_assert_cmpint(tone, ==, FL_TONE_ONE);
 }
@@ -110,7 +110,7 @@ static void paint_that_dries_goes_on_in_the_recording(void)
     g_auto(FlGuides) guides = {0};
     g_auto(FlCarried) carried = {0};
     uint8_t wet[PIXELS] = {0};
-    const FlDrying drying = {&guides, UNIT, SIDE, 1};
+    const FlDrying drying = {&guides, UNIT, SIDE, 1, 0, NULL};
     const FlMatch deep = {16 * STYLE_W / 2, 16 * STYLE_H / 2};
     const FlMatch rim = {16 * (STYLE_W / 2 + 10), 16 * STYLE_H / 2}; // 2 px below the contour
     fill_guides(&guides, 20, 0, 0, 255);
@@ -125,6 +125,40 @@ static void paint_that_dries_goes_on_in_the_recording(void)
     g_assert_cmpint(ABS(now[1].x_16 - rim.x_16 - 16 * (STYLE_FRAMES - 1)), <=, 12);
 }
 
+/* The frame of the exemplar, of 0 to 10, that paint shows after some frames in which it moves by u
+ * px to the right; left of the middle there is no paint. */
+static int played(float u, int frames, int x)
+{
+    enum { LAST = 10 };
+    g_auto(FlGuides) guides = {0};
+    uint8_t before[PIXELS] = {0}, now[PIXELS] = {0}, tones[PIXELS];
+    FlDrying drying = {&guides, UNIT, SIDE, 1, LAST, NULL};
+    fill_guides(&guides, 20, 0, u, 255);
+    for (int p = 0; p < PIXELS; p++)
+        guides.mask[p] = p % SIDE < MIDDLE ? 0 : 255;
+    bool goes_on = true;
+    for (int f = 0; f < frames; f++) {
+        goes_on = fl_drying_step(&drying, whole, NULL, now, tones);
+        memcpy(before, now, sizeof before);
+        drying.before = before;
+    }
+    const int wet = now[MIDDLE * SIDE + x],
+              frame = LAST - (fl_freshness(wet) * LAST + 127) / FL_WET;
+    g_assert_cmpint(tones[MIDDLE * SIDE + x], ==, FL_TONE_ONE);
+    g_assert_true(goes_on == (u > 0 || frame < LAST));
+    return frame;
+}
+
+static void paint_that_plays_is_as_old_as_its_way_from_the_edge(void)
+{
+    g_assert_cmpint(played(0, 1, MIDDLE), ==, 0);
+    g_assert_cmpint(played(0, 5, MIDDLE), ==, 4);
+    g_assert_cmpint(played(0, 20, MIDDLE), ==, 10);
+    for (int age = 0; age < 5; age++)
+        g_assert_cmpint(played(2, 20, MIDDLE + 2 * age), ==, age + 1);
+    g_assert_cmpint(played(0.5f, 20, MIDDLE), <=, 2); // half of it was there before
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -135,6 +169,7 @@ int main(int argc, char **argv)
     TEST(what_moves_is_damp_all_through);
     TEST(what_comes_into_view_is_no_fresher_than_what_was_in_view);
     TEST(paint_that_dries_goes_on_in_the_recording);
+    TEST(paint_that_plays_is_as_old_as_its_way_from_the_edge);
 #undef TEST
     return g_test_run();
 }

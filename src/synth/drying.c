@@ -15,6 +15,7 @@
 #define FALL 0.154f     // 6 frames
 #define FALL_LEFT 0.36f // 2.25 frames: of an edge that recedes
 #define LEAST_STEP 2    // of FL_WET, so that it ends
+#define PLAYED 1        // wetness of paint that has played the exemplar; 0: outside the mask
 #define PALE 0.45f      // share of its density that fresh paint lacks
 #define DRY_AT 0.30f    // wetness up to which paint is as dense as it gets,
 #define FRESH_AT 0.80f  // and from which on it is fresh
@@ -39,9 +40,9 @@ static float band_of(const FlGuides *guides, size_t p, float unit_px)
     return CLAMP(1 - guides->distance[p] / (BAND * unit_px), 0, 1);
 }
 
-int fl_wet_at_rest(const FlGuides *guides, size_t pixel, float unit_px)
+int fl_wet_at_rest(const FlGuides *guides, size_t pixel, float unit_px, bool plays)
 {
-    return (int)(band_of(guides, pixel, unit_px) * DAMP * FL_WET + 0.5f);
+    return plays ? PLAYED : (int)(band_of(guides, pixel, unit_px) * DAMP * FL_WET + 0.5f);
 }
 
 static float edge_of(float units)
@@ -99,6 +100,35 @@ static int next_wetness(const Place *place, int was)
     return target > was ? MIN(was + step, target) : MAX(was - step, target);
 }
 
+/* The wetness of paint in the frame before, between its pixels: outside the mask it is fresh,
+ * beyond the page as at its side. */
+static float wet_before(const FlDrying *drying, float x, float y)
+{
+    const int x0 = (int)floorf(x), y0 = (int)floorf(y);
+    float wet = 0;
+    for (int k = 0; k < 4; k++) {
+        const float u = (float)(x0 + (k & 1)), v = (float)(y0 + (k >> 1));
+        const int i = CLAMP((int)u, 0, drying->width - 1);
+        const int j = CLAMP((int)v, 0, drying->guides->height - 1);
+        const int was = drying->before[(size_t)j * (size_t)drying->width + (size_t)i];
+        wet += (1 - fabsf(x - u)) * (1 - fabsf(y - v)) * (float)(was > 0 ? was : FL_WET);
+    }
+    return wet;
+}
+
+/* The wetness of paint that plays: one frame of the exemplar less fresh than it was. */
+static int next_age(const FlDrying *drying, size_t p, int x, int y)
+{
+    const FlGuides *guides = drying->guides;
+    const int32_t *motion = guides->motion + 2 * p;
+    if (!drying->before || !guides->has_motion || motion[0] == FL_MOTION_UNKNOWN)
+        return FL_WET;
+    const float was = wet_before(drying, (float)x - (float)motion[0] / FL_MOTION_ONE,
+                                 (float)y - (float)motion[1] / FL_MOTION_ONE);
+    const float fresh = was * was / FL_WET - (float)FL_WET / (float)drying->plays;
+    return MAX((int)lrintf(sqrtf(fmaxf(fresh, 0) * FL_WET)), PLAYED);
+}
+
 /* The tone of a pixel of some wetness and depth. */
 static uint8_t tone_of(const FlDrying *drying, const Place *place, int wet, float depth)
 {
@@ -143,11 +173,17 @@ bool fl_drying_step(const FlDrying *drying, FlRect rect, const FlCarried *carrie
             tone[q] = FL_TONE_ONE;
             if (guides->mask[p] < FL_INSIDE)
                 continue;
+            uint8_t *const at = wet + (size_t)y * (size_t)drying->width + (size_t)x;
+            if (drying->plays > 0) {
+                *at = (uint8_t)next_age(drying, p, x, y);
+                dries = dries || *at > PLAYED;
+                continue;
+            }
             const Place place = place_of(drying, p, x, y, !carried);
             const int now = wetness(drying, &place, carried, q, p, x, y);
-            wet[(size_t)y * (size_t)drying->width + (size_t)x] = (uint8_t)now;
+            *at = (uint8_t)now;
             tone[q] = tone_of(drying, &place, now, guides->distance[p]);
-            dries = dries || now != fl_wet_at_rest(guides, p, drying->unit_px);
+            dries = dries || now != fl_wet_at_rest(guides, p, drying->unit_px, false);
         }
     return dries;
 }
@@ -190,14 +226,15 @@ static FlMatch in_frame(const FlExemplar *exemplar, FlMatch m, int frame)
     return m;
 }
 
+/* was: the wetness that the match shows; below 0: unknown, since paint plays. */
 static FlMatch shown(const FlExemplar *exemplar, FlMatch m, int was, int wet)
 {
     const FlExemplarLevel *level = &exemplar->level[0];
     const int segment =
         fl_exemplar_at(level, fl_match_x(m), fl_match_y(m), m.frame)->c[FL_CH_SEGMENT];
-    const int by = fl_frame_of_freshness(level, fl_freshness(wet)) -
-                   fl_frame_of_freshness(level, fl_freshness(was));
-    const int frame = CLAMP(m.frame + by, level->first, level->first + level->window - 1);
+    const int now = fl_frame_of_freshness(level, fl_freshness(wet));
+    const int then = was < 0 ? m.frame : fl_frame_of_freshness(level, fl_freshness(was));
+    const int frame = CLAMP(m.frame + now - then, level->first, level->first + level->window - 1);
     const FlMatch next = frame == m.frame ? m : in_frame(exemplar, m, frame);
     return shows(level, next, segment) ? next : m;
 }
@@ -212,8 +249,9 @@ void fl_drying_show(const FlDrying *drying, FlRect rect, const uint8_t *wet,
             FlMatch *m = &carried->nnf.match[p];
             const int now =
                 wet[(size_t)(rect.y + y) * (size_t)drying->width + (size_t)(rect.x + x)];
-            if (m->frame != FL_NO_MATCH && now != carried->wet[p])
-                *m = shown(exemplar, *m, carried->wet[p], now);
+            const int was = drying->plays > 0 ? -1 : carried->wet[p];
+            if (m->frame != FL_NO_MATCH && now != was)
+                *m = shown(exemplar, *m, was, now);
         }
 }
 

@@ -10,12 +10,14 @@ typedef struct FlDrying {
     float unit_px;          // 1/480 of the page's larger side
     int width;              // of the frame
     float wets;             // of the exemplar
+    int plays;              // frames of the exemplar that paint shows by its age; 0: it dries
+    const uint8_t *before;  // for paint that plays: its wetness in the frame before; NULL: none
 } FlDrying;
 
 #define FL_TONE_ONE 128
 
-/** The wetness of a pixel of guides at rest. */
-int fl_wet_at_rest(const FlGuides *guides, size_t pixel, float unit_px);
+/** The wetness of a pixel of guides at rest; plays: of paint that shows its age. */
+int fl_wet_at_rest(const FlGuides *guides, size_t pixel, float unit_px, bool plays);
 
 /**
  * Computes the wetness of all pixels of a rectangle. `carried` holds the pixels as they come from
@@ -27,6 +29,10 @@ int fl_wet_at_rest(const FlGuides *guides, size_t pixel, float unit_px);
  * is new; paint of a body that comes into view at a side of the page is not new. wet: of the frame,
  * 0 elsewhere. tone: of rect, the factor of its density, FL_TONE_ONE is 1: fresh paint is pale, and
  * pigment gathers where the contour recedes.
+ *
+ * Paint that plays is as wet as can be where it comes in from outside the mask, and loses as much
+ * freshness with each frame as there is between two frames of the exemplar; its tone is 1. So what
+ * a fluid brings in is young at its source.
  *
  * Returns: true if the wetness of a pixel differs from its wetness at rest.
  */

@@ -22,7 +22,7 @@ static bool stirs(const FlGuides *guides, size_t p, uint8_t last_shape, uint8_t 
     if (last_shape != shape_at(guides, p, rule->border_px))
         return true;
     if (rule->unit_px > 0 && guides->mask[p] >= FL_INSIDE &&
-        last_wet != fl_wet_at_rest(guides, p, rule->unit_px))
+        last_wet != fl_wet_at_rest(guides, p, rule->unit_px, rule->plays))
         return true;
     if (guides->has_motion && guides->motion[2 * p] != FL_MOTION_UNKNOWN &&
         (guides->motion[2 * p] | guides->motion[2 * p + 1]) != 0)

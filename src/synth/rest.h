@@ -12,6 +12,7 @@ typedef struct FlRestRule {
     float border_px;
     float still;   // the fastest flow, px a frame
     float unit_px; // that of FlDrying; 0: paint does not dry
+    bool plays;    // it shows the exemplar by its age
 } FlRestRule;
 
 /**

@@ -96,16 +96,25 @@ static bool carry_last(const FlSynth *synth, const FlGuides *guides, FlRect rect
     return true;
 }
 
+#define DRY_AFTER 36     // frames at rest
 #define DRIES_FROM 0.75f // carry from which on paint dries, wholly where it is 1
 
-bool fl_synth_dries(const FlExemplar *exemplar, const FlParams *params)
+int fl_synth_dries(const FlExemplar *exemplar, const FlParams *params)
 {
-    return params->carry > DRIES_FROM && params->w_age > 0 && exemplar->level[0].window > 1;
+    const int window = exemplar->level[0].window;
+    const bool dries = params->carry > DRIES_FROM && params->w_age > 0 && window > 1;
+    return !dries ? 0 : params->play_age ? window : DRY_AFTER;
 }
 
 static bool dries(const FlSynth *synth)
 {
-    return fl_synth_dries(synth->exemplar, synth->params);
+    return fl_synth_dries(synth->exemplar, synth->params) > 0;
+}
+
+/* The frames of the exemplar that paint plays by its age; 0: it dries. */
+static int plays(const FlSynth *synth)
+{
+    return synth->params->play_age ? synth->exemplar->level[0].window - 1 : 0;
 }
 
 /* Computes the wetness of the frame's paint, *wet, and moves carried matches to this wetness. */
@@ -113,8 +122,9 @@ static bool dry(FlSynth *synth, const FlGuides *guides, FlRect rect, FlCarried *
                 uint8_t **wet, bool *goes_on, GError **error)
 {
     const float share = fl_ease(DRIES_FROM, 1, synth->params->carry);
-    const FlDrying drying = {guides, synth->side / 480, synth->width,
-                             share * synth->exemplar->wets};
+    const FlDrying drying = {guides,       synth->side / 480,
+                             synth->width, share * synth->exemplar->wets,
+                             plays(synth), carried ? synth->last.wet : NULL};
     *goes_on = false;
     *wet = fl_alloc((size_t)synth->width * (size_t)synth->height, 1, "a mask", error);
     if (!*wet || !dries(synth))
@@ -165,7 +175,7 @@ static void fill_paper(const FlSynth *synth, uint8_t *rgb)
 static FlRestRule rest_rule(const FlSynth *synth)
 {
     return (FlRestRule){synth->exemplar->border_px, synth->params->flow_still,
-                        dries(synth) ? synth->side / 480 : 0};
+                        dries(synth) ? synth->side / 480 : 0, plays(synth) > 0};
 }
 
 static bool take_shape(FlSynth *synth, const FlGuides *guides, GError **error)

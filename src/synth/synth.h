@@ -44,10 +44,9 @@ bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats
  * Returns: false if the frame must be painted; the state is then unchanged. */
 bool fl_synth_rest(FlSynth *synth);
 
-#define FL_DRYING_FRAMES 36 // paint at rest is dry after these
-
-/** True if paint shows its wetness: only paint that is carried whole has a known age. */
-bool fl_synth_dries(const FlExemplar *exemplar, const FlParams *params);
+/** The frames after which paint at rest is dry, or has played the exemplar; 0: it does not show its
+ * wetness. Only paint that is carried whole has a known age. */
+int fl_synth_dries(const FlExemplar *exemplar, const FlParams *params);
 
 /**
  * The guides of the frame just painted, which must have had a view and levels in its statistics.
