@@ -130,24 +130,47 @@ void fl_fluid_picture_pack_row(const float *rgba, int y, const FlFluidPicture *p
     pack_row(rgba, 4, scale, FL_FLUID_R, y, picture);
 }
 
+#define REACHES 0.75f // least blurred alpha in a patch of the interior
+
+enum { BORDER, INTERIOR, NO_FLUID };
+
+/* The segment of a pixel. A patch that reaches over the contour is none of the interior, where it
+ * would leave spots of the edge. */
+static uint8_t segment_of(const FlFluidPlanes *planes, int x, int y)
+{
+    const int r = FL_PATCH_RADIUS, width = planes->width, height = planes->height;
+    const float *edge = planes->plane[FL_FLUID_PLANE_EDGE];
+    if (!(edge[y * width + x] >= FL_FLUID_UPPER))
+        return edge[y * width + x] > FL_FLUID_LOWER ? BORDER : NO_FLUID;
+    for (int v = MAX(y - r, 0); v <= MIN(y + r, height - 1); v++)
+        for (int u = MAX(x - r, 0); u <= MIN(x + r, width - 1); u++)
+            if (!(edge[v * width + u] >= REACHES))
+                return BORDER;
+    return INTERIOR;
+}
+
 bool fl_fluid_segments_init(FlFluidSegments *segments, const FlFluidPlanes *planes, GError **error)
 {
-    const uint32_t pixels = (uint32_t)planes->width * (uint32_t)planes->height;
-    const float *edge = planes->plane[FL_FLUID_PLANE_EDGE];
+    const int width = planes->width, height = planes->height;
+    const uint32_t pixels = (uint32_t)width * (uint32_t)height;
+    g_autofree uint8_t *of = fl_alloc(pixels, 1, "a region's segments", error);
     *segments = (FlFluidSegments){0};
-    for (uint32_t p = 0; p < pixels; p++)
-        if (edge[p] > FL_FLUID_LOWER)
-            segments->n[edge[p] >= FL_FLUID_UPPER]++;
-    for (int s = 0; s < 2; s++)
+    if (!of)
+        return false;
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            of[y * width + x] = segment_of(planes, x, y);
+    for (int s = BORDER; s <= INTERIOR; s++) {
+        for (uint32_t p = 0; p < pixels; p++)
+            segments->n[s] += of[p] == s;
         if (!(segments->place[s] =
                   fl_alloc(segments->n[s], sizeof(uint32_t), "a region's segments", error)))
             return false;
-    size_t n[2] = {0};
-    for (uint32_t p = 0; p < pixels; p++)
-        if (edge[p] > FL_FLUID_LOWER) {
-            const int s = edge[p] >= FL_FLUID_UPPER;
-            segments->place[s][n[s]++] = p;
-        }
+        for (uint32_t p = 0, k = 0; k < segments->n[s]; p++)
+            if (of[p] == s)
+                segments->place[s][k++] = p;
+    }
     return true;
 }
 

@@ -58,8 +58,8 @@ typedef struct FlFluidSegments {
 } FlFluidSegments;
 
 /**
- * The pixels whose blurred alpha is above FL_FLUID_LOWER, and from FL_FLUID_UPPER on those of the
- * interior. Returns: false with FL_ERROR_NO_MEMORY set.
+ * The pixels whose blurred alpha is above FL_FLUID_LOWER: of the interior from FL_FLUID_UPPER on,
+ * if their patch lies inside the contour. Returns: false with FL_ERROR_NO_MEMORY set.
  */
 bool fl_fluid_segments_init(FlFluidSegments *segments, const FlFluidPlanes *planes, GError **error);
 void fl_fluid_segments_clear(FlFluidSegments *segments);
