@@ -314,7 +314,7 @@ static void test_sides(void)
         const int across = abs(stain->at / SIDE - 100);
         if (across > RADIUS - 5)
             g_assert_cmpfloat(stain->depth, <, 6);
-        if (across < RADIUS - 20)
+        if (across < RADIUS - 23)
             g_assert_cmpfloat(stain->depth, >, 7);
     }
     scene_free(scene);

@@ -18,12 +18,11 @@ enum { NEAR_PX = 32 }; // within it a distance is as exact as the contour
 typedef struct Work {
     int width, height;
     const uint8_t *mask;
-    GArray *seeds;         // of FlContourPiece
-    GArray *pixels;        // of int32_t: where each seed sits
-    FlContourLinks *links; // from each seed to the seeds of the pixels around
-    int32_t *seed_at;      // index of the seed on this pixel; -1: no seed
-    int16_t *near_y;       // row of the nearest seed in this column; -1: no seed
-    int32_t *nearest;      // index of the seed with the nearest centre
+    GArray *seeds;      // of FlContourPiece
+    GArray *pixels;     // of int32_t: where each seed sits
+    FlContour *contour; // of the seeds
+    int32_t *seed_at;   // index of the seed on this pixel; -1: no seed
+    int16_t *near_y;    // row of the nearest seed in this column; -1: no seed
 } Work;
 
 static void work_clear(Work *work)
@@ -32,24 +31,23 @@ static void work_clear(Work *work)
         g_array_unref(work->seeds);
     if (work->pixels)
         g_array_unref(work->pixels);
-    g_free(work->links);
     g_free(work->seed_at);
     g_free(work->near_y);
-    g_free(work->nearest);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Work, work_clear)
 
-static bool work_init(Work *work, const uint8_t *mask, int width, int height, GError **error)
+static bool work_init(Work *work, const uint8_t *mask, int width, int height, FlContour *contour,
+                      GError **error)
 {
     const size_t n = (size_t)width * height;
-    *work = (Work){.width = width, .height = height, .mask = mask};
+    *work = (Work){.width = width, .height = height, .mask = mask, .contour = contour};
     work->seeds = g_array_new(FALSE, FALSE, sizeof(FlContourPiece));
     work->pixels = g_array_new(FALSE, FALSE, sizeof(int32_t));
     const char *what = "the distances of a mask";
     return (work->seed_at = fl_alloc_unset(n, sizeof *work->seed_at, what, error)) &&
            (work->near_y = fl_alloc_unset(n, sizeof *work->near_y, what, error)) &&
-           (work->nearest = fl_alloc_unset(n, sizeof *work->nearest, what, error));
+           (contour->nearest = fl_alloc_unset(n, sizeof *contour->nearest, what, error));
 }
 
 /** Coverage in 0..1 of a pixel, or of the nearest one in the frame. */
@@ -230,7 +228,7 @@ static void search_row(Work *work, int y, Parabola *envelope)
         if (num < w * den)
             envelope[n++] = (Parabola){x, up, num, den};
     }
-    int32_t *nearest = work->nearest + y * (size_t)w;
+    int32_t *nearest = work->contour->nearest + y * (size_t)w;
     for (int k = 0, x = 0; k < n; k++) {
         const int column = envelope[k].column;
         const int32_t seed = work->seed_at[near_y[column] * (size_t)w + column];
@@ -251,10 +249,10 @@ static void set_link(FlContourLinks *links, int k, const FlContourPiece *piece, 
 
 static void link_seed(const Work *work, int32_t seed)
 {
-    const FlContourPiece *pieces = (const FlContourPiece *)(void *)work->seeds->data;
-    const int32_t pixel = g_array_index(work->pixels, int32_t, seed);
+    const FlContourPiece *pieces = work->contour->piece;
+    const int32_t pixel = work->contour->pixel[seed];
     const int w = work->width, h = work->height, x = pixel % w, y = pixel / w;
-    FlContourLinks *links = &work->links[seed];
+    FlContourLinks *links = &work->contour->links[seed];
     int n = 0;
     links->has_discs = false;
     for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, h - 1); ny++)
@@ -267,14 +265,18 @@ static void link_seed(const Work *work, int32_t seed)
         set_link(links, n, &pieces[seed], seed);
 }
 
+/** Makes the contour of the seeds. */
 static bool link_seeds(Work *work, GError **error)
 {
-    const guint n = work->seeds->len;
-    if (!(work->links = fl_alloc_unset(n, sizeof *work->links, "the distances of a mask", error)))
-        return false;
-    for (guint seed = 0; seed < n; seed++)
-        link_seed(work, (int32_t)seed);
-    return true;
+    FlContour *contour = work->contour;
+    contour->n = (int)work->seeds->len;
+    contour->piece = (FlContourPiece *)(void *)g_array_free(g_steal_pointer(&work->seeds), FALSE);
+    contour->pixel = (int32_t *)(void *)g_array_free(g_steal_pointer(&work->pixels), FALSE);
+    contour->links = fl_alloc_unset((size_t)contour->n, sizeof *contour->links,
+                                    "the distances of a mask", error);
+    for (int seed = 0; seed < contour->n && contour->links; seed++)
+        link_seed(work, seed);
+    return contour->links;
 }
 
 /**
@@ -284,10 +286,10 @@ static bool link_seeds(Work *work, GError **error)
 static void measure_row(const Work *work, int y, float *distance)
 {
     const int w = work->width;
-    const int32_t *own = work->nearest + y * (size_t)w;
+    const int32_t *own = work->contour->nearest + y * (size_t)w;
     const uint8_t *mask = work->mask + y * (size_t)w;
-    const FlContourRow row = {.piece = (const FlContourPiece *)(void *)work->seeds->data,
-                              .links = work->links,
+    const FlContourRow row = {.piece = work->contour->piece,
+                              .links = work->contour->links,
                               .above = y > 0 ? own - w : own,
                               .own = own,
                               .below = y < work->height - 1 ? own + w : own,
@@ -300,11 +302,13 @@ static void measure_row(const Work *work, int y, float *distance)
     }
 }
 
-bool fl_distance(const uint8_t *mask, int width, int height, float *distance, GError **error)
+bool fl_distance_to_contour(const uint8_t *mask, int width, int height, float *distance,
+                            FlContour *contour, GError **error)
 {
+    *contour = (FlContour){0};
     g_assert(width >= 1 && height >= 1 && width <= INT16_MAX && height <= INT16_MAX);
     g_auto(Work) work = {0};
-    if (!work_init(&work, mask, width, height, error))
+    if (!work_init(&work, mask, width, height, contour, error))
         return false;
     g_autofree uint8_t *mixed = g_malloc0(width);
     find_seeds(&work, mixed);
@@ -328,4 +332,19 @@ bool fl_distance(const uint8_t *mask, int width, int height, float *distance, GE
             measure_row(&work, y, distance + y * (size_t)width);
     }
     return true;
+}
+
+bool fl_distance(const uint8_t *mask, int width, int height, float *distance, GError **error)
+{
+    g_auto(FlContour) contour = {0};
+    return fl_distance_to_contour(mask, width, height, distance, &contour, error);
+}
+
+void fl_contour_clear(FlContour *contour)
+{
+    g_free(contour->piece);
+    g_free(contour->links);
+    g_free(contour->pixel);
+    g_free(contour->nearest);
+    *contour = (FlContour){0};
 }

@@ -2,9 +2,8 @@
 #ifndef FLUIDY_GUIDES_DISTANCE_H
 #define FLUIDY_GUIDES_DISTANCE_H
 
+#include "base/row_kernels.h"
 #include <fluidy/error.h>
-#include <stdbool.h>
-#include <stdint.h>
 
 #define FL_INSIDE 128
 
@@ -23,5 +22,22 @@
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */
 bool fl_distance(const uint8_t *mask, int width, int height, float *distance, GError **error);
+
+/** A contour as one piece for each pixel beside it, on either side. */
+typedef struct FlContour {
+    int n;
+    FlContourPiece *piece;
+    FlContourLinks *links; // to the pieces of the pixels around
+    int32_t *pixel;        // of each piece: y * width + x
+    int32_t *nearest; // of each pixel of the mask: a piece whose pixel is nearest; unset if n is 0
+} FlContour;
+
+/** The same, and the contour; to be cleared. */
+bool fl_distance_to_contour(const uint8_t *mask, int width, int height, float *distance,
+                            FlContour *contour, GError **error);
+
+void fl_contour_clear(FlContour *contour);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlContour, fl_contour_clear)
 
 #endif

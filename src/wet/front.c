@@ -53,7 +53,7 @@ static bool make_planes(Front *front, GError **error)
     if (!front->any)
         return true;
     for (size_t p = 0; p < n; p++) {
-        const int32_t nearest = edge->nearest[p];
+        const int32_t nearest = edge->contour.nearest[p];
         const float share = front->dials->front_map ? front->dials->front_map[p] : 1;
         front->width[p] = nearest >= 0 ? share * widths[nearest] : 0;
         front->strength[p] = nearest >= 0 ? strengths[nearest] : 0;
@@ -75,7 +75,7 @@ static bool find_mark(const Front *front, const FlWetSheet *sheet, size_t p, flo
                       float beyond, FlFrontMark *mark)
 {
     const FlFrontStyle *style = front->dials->style;
-    const FlEdgePoint *point = &front->edge->point[front->edge->nearest[p]];
+    const FlEdgePoint *point = &front->edge->point[front->edge->contour.nearest[p]];
     const float px = front->shape->px, f = front->width[p];
     const float inset = MIN(2.5f * px, 0.45f * point->half_width), ahead = inset - depth;
     if (f <= 0.5f * px || depth >= 14 * px || ahead > 4.2f * f + 6 * px)
@@ -115,7 +115,7 @@ static void add_marks(const Front *front, const FlWetAround *around, const FlWet
         for (int x = 0; x < rect.width; x++) {
             const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
             FlFrontMark mark = {.at = (rect.y + y) * page.width + rect.x + x};
-            if (!(around->touches[p] & 1) || front->edge->nearest[p] < 0)
+            if (!(around->touches[p] & 1) || front->edge->contour.nearest[p] < 0)
                 continue;
             const float px = (float)x + front->shape->beside[0];
             const float py = (float)y + front->shape->beside[1];

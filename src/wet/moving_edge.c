@@ -14,12 +14,6 @@ float fl_wet_absorbance(uint8_t paint, uint8_t paper)
     return CLAMP(density * 0.693147181f, 0.0f, 4.0f);
 }
 
-/** The neighbours of a point. */
-typedef struct Links {
-    int n;
-    int32_t to[8];
-} Links;
-
 float fl_wet_plane_at(const float *plane, FlRect rect, float x, float y)
 {
     const float cx = CLAMP(x, 0.0f, (float)rect.width - 1.001f);
@@ -34,41 +28,6 @@ float fl_wet_plane_at(const float *plane, FlRect rect, float x, float y)
     return upper + (lower - upper) * ty;
 }
 
-/** A contour at the very edge of the page is where the page cuts the shape. */
-static bool within_page(const FlWetShape *shape, int x, int y)
-{
-    const int px = shape->rect.x + x, py = shape->rect.y + y;
-    return px >= 2 && py >= 2 && px < shape->page.width - 2 && py < shape->page.height - 2;
-}
-
-/** Says if the contour crosses between a pixel and one of its four neighbours. */
-static bool is_crossed(const FlWetShape *shape, int x, int y)
-{
-    const FlRect rect = shape->rect;
-    const uint8_t *mask = shape->now + (size_t)y * (size_t)rect.width + x;
-    const bool inside = mask[0] >= FL_INSIDE;
-    return (x > 0 && (mask[-1] >= FL_INSIDE) != inside) ||
-           (x + 1 < rect.width && (mask[1] >= FL_INSIDE) != inside) ||
-           (y > 0 && (mask[-rect.width] >= FL_INSIDE) != inside) ||
-           (y + 1 < rect.height && (mask[rect.width] >= FL_INSIDE) != inside);
-}
-
-static void find_points(const FlWetShape *shape, const float *distance, GArray *points,
-                        int32_t *nearest)
-{
-    const FlRect rect = shape->rect;
-    for (int y = 0; y < rect.height; y++)
-        for (int x = 0; x < rect.width; x++) {
-            const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
-            nearest[p] = -1;
-            if (!is_crossed(shape, x, y) || !within_page(shape, x, y))
-                continue;
-            const FlEdgePoint point = {.x = (float)x, .y = (float)y, .depth = distance[p]};
-            nearest[p] = (int32_t)points->len;
-            g_array_append_val(points, point);
-        }
-}
-
 static float coverage_at(const FlWetShape *shape, int x, int y)
 {
     const FlRect rect = shape->rect;
@@ -76,79 +35,30 @@ static float coverage_at(const FlWetShape *shape, int x, int y)
     return (float)shape->now[(size_t)row * (size_t)rect.width + (size_t)column] / 255;
 }
 
-/** Away from the shape. */
-static void find_normal(const FlWetShape *shape, FlEdgePoint *point)
-{
-    const int x = (int)point->x, y = (int)point->y;
-    float nx = 0, ny = 0;
-    for (int k = -2; k <= 2; k++)
-        for (int d = 1; d <= 2; d++) {
-            nx += coverage_at(shape, x - d, y + k) - coverage_at(shape, x + d, y + k);
-            ny += coverage_at(shape, x + k, y - d) - coverage_at(shape, x + k, y + d);
-        }
-    const float length = sqrtf(nx * nx + ny * ny) + 1e-6f;
-    point->nx = nx / length, point->ny = ny / length;
-}
-
-/** Takes the point of another pixel if it is nearer. most: squared, 0: any distance. */
-static void take(const FlMovingEdge *edge, size_t p, size_t other, int x, int y, float most)
-{
-    const int32_t candidate = edge->nearest[other], own = edge->nearest[p];
-    if (candidate < 0 || candidate == own)
-        return;
-    const FlEdgePoint *a = &edge->point[candidate];
-    const float ax = (float)x - a->x, ay = (float)y - a->y, squared = ax * ax + ay * ay;
-    float best = most;
-    if (own >= 0) {
-        const FlEdgePoint *b = &edge->point[own];
-        const float bx = (float)x - b->x, by = (float)y - b->y;
-        best = bx * bx + by * by;
-    }
-    if (squared < best)
-        edge->nearest[p] = candidate;
-}
-
-/** One way over the rows: from those that came before, then along each row, both ways. */
-static void sweep(const FlMovingEdge *edge, const FlWetShape *shape, bool down)
-{
-    const FlRect rect = shape->rect;
-    const int width = rect.width;
-    const float deep = FL_WET_DEEP_PX * shape->px;
-    for (int k = 0; k < rect.height; k++) {
-        const int y = down ? k : rect.height - 1 - k;
-        const size_t row = (size_t)y * (size_t)width;
-        const size_t last = down ? row - (size_t)width : row + (size_t)width;
-        for (int x = 0; x < width; x++) {
-            const size_t p = row + (size_t)x;
-            const float most = shape->now[p] >= FL_INSIDE ? deep * deep : 1e12f;
-            for (int i = MAX(x - 1, 0); k > 0 && i <= MIN(x + 1, width - 1); i++)
-                take(edge, p, last + (size_t)i, x, y, most);
-            if (x > 0)
-                take(edge, p, p - 1, x, y, most);
-        }
-        for (int x = width - 2; x >= 0; x--) {
-            const size_t p = row + (size_t)x;
-            take(edge, p, p + 1, x, y, shape->now[p] >= FL_INSIDE ? deep * deep : 1e12f);
-        }
-    }
-}
-
 bool fl_moving_edge_look(FlMovingEdge *edge, const FlWetShape *shape, GError **error)
 {
     const size_t n = fl_rect_pixels(shape->rect);
+    const int width = shape->rect.width;
+    FlContour *contour = &edge->contour;
     *edge = (FlMovingEdge){.rect = shape->rect};
-    if (!(edge->nearest = fl_alloc_unset(n, sizeof *edge->nearest, "an edge", error)) ||
-        !(edge->distance = fl_alloc_unset(n, sizeof *edge->distance, "an edge", error)) ||
-        !fl_distance(shape->now, shape->rect.width, shape->rect.height, edge->distance, error))
+    if (!(edge->distance = fl_alloc_unset(n, sizeof *edge->distance, "an edge", error)) ||
+        !fl_distance_to_contour(shape->now, width, shape->rect.height, edge->distance, contour,
+                                error))
         return false;
-    GArray *points = g_array_new(FALSE, TRUE, sizeof(FlEdgePoint));
-    find_points(shape, edge->distance, points, edge->nearest);
-    edge->n = (int)points->len;
-    edge->point = (FlEdgePoint *)(void *)g_array_free(points, FALSE);
-    for (int i = 0; i < edge->n; i++)
-        find_normal(shape, &edge->point[i]);
-    sweep(edge, shape, true);
-    sweep(edge, shape, false);
+    edge->n = contour->n;
+    edge->point = g_new0(FlEdgePoint, MAX(edge->n, 1));
+    for (int i = 0; i < edge->n; i++) {
+        const FlContourPiece *piece = &contour->piece[i];
+        const int32_t pixel = contour->pixel[i];
+        edge->point[i] = (FlEdgePoint){.x = (float)(pixel % width),
+                                       .y = (float)(pixel / width),
+                                       .depth = edge->distance[pixel],
+                                       .nx = -piece->nx,
+                                       .ny = -piece->ny};
+    }
+    for (size_t p = 0; p < n; p++)
+        if (edge->n == 0 || edge->distance[p] > FL_WET_DEEP_PX * shape->px)
+            contour->nearest[p] = -1;
     return true;
 }
 
@@ -279,22 +189,6 @@ static void find_ink(const FlWetShape *shape, const FlMovingEdge *before, const 
         point->ink[c] = sum[c] / MAX(weight, 1);
 }
 
-static void link_points(FlRect rect, const FlMovingEdge *edge, Links *links)
-{
-    for (int i = 0; i < edge->n; i++) {
-        const FlEdgePoint *point = &edge->point[i];
-        const int px = (int)point->x, py = (int)point->y;
-        for (int y = MAX(py - 1, 0); y <= MIN(py + 1, rect.height - 1); y++)
-            for (int x = MAX(px - 1, 0); x <= MIN(px + 1, rect.width - 1); x++) {
-                const int32_t other = edge->nearest[(size_t)y * (size_t)rect.width + (size_t)x];
-                const FlEdgePoint *there = other >= 0 ? &edge->point[other] : point;
-                const bool own = (int)there->x == x && (int)there->y == y;
-                if (own && other != i)
-                    links[i].to[links[i].n++] = other;
-            }
-    }
-}
-
 /** All but the place. */
 static float *values_of(FlEdgePoint *point)
 {
@@ -304,7 +198,7 @@ static float *values_of(FlEdgePoint *point)
 enum { N_VALUES = (sizeof(FlEdgePoint) - offsetof(FlEdgePoint, nx)) / sizeof(float) };
 
 /** Means with the points around, again and again: a Gaussian of about 3 px along the contour. */
-static void smooth(const FlWetShape *shape, FlMovingEdge *edge, const Links *links)
+static void smooth(const FlWetShape *shape, FlMovingEdge *edge)
 {
     const int rounds = CLAMP((int)(14 * shape->px * shape->px), 4, 60);
     FlEdgePoint *next = g_memdup2(edge->point, (size_t)edge->n * sizeof *next);
@@ -312,11 +206,13 @@ static void smooth(const FlWetShape *shape, FlMovingEdge *edge, const Links *lin
         for (int i = 0; i < edge->n; i++) {
             float *to = values_of(&next[i]);
             memcpy(to, values_of(&edge->point[i]), N_VALUES * sizeof *to);
-            for (int l = 0; l < links[i].n; l++)
+            const int32_t *link = edge->contour.links[i].piece;
+            int n = 0;
+            for (; n < FL_LINKS && link[n] != i; n++)
                 for (int c = 0; c < N_VALUES; c++)
-                    to[c] += values_of(&edge->point[links[i].to[l]])[c];
+                    to[c] += values_of(&edge->point[link[n]])[c];
             for (int c = 0; c < N_VALUES; c++)
-                to[c] /= (float)(links[i].n + 1);
+                to[c] /= (float)(n + 1);
         }
         FlEdgePoint *last = edge->point;
         edge->point = next, next = last;
@@ -337,7 +233,7 @@ static const FlEdgePoint *point_before(const FlWetShape *shape, const FlMovingEd
         return NULL;
     const size_t column = (size_t)CLAMP(x + 0.5f, 0, (float)was.width - 1);
     const size_t row = (size_t)CLAMP(y + 0.5f, 0, (float)was.height - 1);
-    const int32_t nearest = before->nearest[row * (size_t)was.width + column];
+    const int32_t nearest = before->contour.nearest[row * (size_t)was.width + column];
     return nearest >= 0 ? &before->point[nearest] : NULL;
 }
 
@@ -378,13 +274,11 @@ bool fl_moving_edge_init(FlMovingEdge *edge, const FlWetShape *shape, const FlMo
 {
     if (!fl_moving_edge_look(edge, shape, error))
         return false;
-    g_autofree Links *links = g_new0(Links, MAX(edge->n, 1));
     g_autofree bool *known = g_new(bool, MAX(edge->n, 1));
     find_motions(shape, edge, known);
     for (int i = 0; i < edge->n; i++)
         find_point(shape, before, known[i], edge, &edge->point[i]);
-    link_points(shape->rect, edge, links);
-    smooth(shape, edge, links);
+    smooth(shape, edge);
     for (int i = 0; i < edge->n; i++)
         edge->fastest = MAX(edge->fastest, fabsf(edge->point[i].speed));
     return true;
@@ -393,7 +287,7 @@ bool fl_moving_edge_init(FlMovingEdge *edge, const FlWetShape *shape, const FlMo
 void fl_moving_edge_clear(FlMovingEdge *edge)
 {
     g_free(edge->point);
-    free(edge->nearest);
+    fl_contour_clear(&edge->contour);
     free(edge->distance);
     *edge = (FlMovingEdge){0};
 }

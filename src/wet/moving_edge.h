@@ -4,6 +4,7 @@
 
 #include "base/rect.h"
 #include "compose/laid.h"
+#include "guides/distance.h"
 #include "svg/affine.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -48,10 +49,10 @@ typedef struct FlMovingEdge {
     FlRect rect;
     int n;
     FlEdgePoint *point;
-    int32_t *nearest; // of rect: the point nearest to each pixel; -1: deep inside
-    float *distance;  // of rect: to the contour, positive inside; NULL: no frame yet
-    int known;        // points whose motion is known
-    float fastest;    // of all points, cells a frame
+    FlContour contour; // of rect, and of the points; nearest is -1 deep inside
+    float *distance;   // of rect: to the contour, positive inside
+    int known;         // points whose motion is known
+    float fastest;     // of all points, cells a frame
 } FlMovingEdge;
 
 /** The motion of the paper at a place of rect, since the frame before. */

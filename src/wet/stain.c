@@ -159,9 +159,9 @@ void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
     for (int y = 0; y < rect.height && edge->n > 0; y++)
         for (int x = 0; x < rect.width; x++) {
             const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
-            if (!(around->touches[p] & 2) || edge->nearest[p] < 0)
+            if (!(around->touches[p] & 2) || edge->contour.nearest[p] < 0)
                 continue;
-            const FlEdgePoint *point = &edge->point[edge->nearest[p]];
+            const FlEdgePoint *point = &edge->point[edge->contour.nearest[p]];
             const float inset = MIN(2.5f * shape->px, 0.45f * point->half_width);
             const float px = (float)x + shape->beside[0], py = (float)y + shape->beside[1];
             const float below = under(shape, point);
@@ -188,9 +188,9 @@ static float stays(const FlWetShape *shape, const FlMovingEdge *edge, int x, int
     if (x < rect.x || y < rect.y || x >= rect.x + rect.width || y >= rect.y + rect.height)
         return 0;
     const size_t p = (size_t)(y - rect.y) * (size_t)rect.width + (size_t)(x - rect.x);
-    if (edge->nearest[p] < 0)
+    if (edge->contour.nearest[p] < 0)
         return 1;
-    const FlEdgePoint *point = &edge->point[edge->nearest[p]];
+    const FlEdgePoint *point = &edge->point[edge->contour.nearest[p]];
     const float moved = sqrtf(point->u * point->u + point->v * point->v);
     const float gone = fl_ease(1, 1.5f, -edge->distance[p] / (moved + 24 * shape->px));
     const float below = fl_ease(-2 * shape->px, 2 * shape->px, shape->distance_before[p]);
