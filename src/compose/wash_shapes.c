@@ -1,5 +1,6 @@
 /* The part of a wash that follows from its shapes: masks, light and shadow, pools. */
 #include "base/alloc.h"
+#include "base/row_kernels.h"
 #include "compose/wash_field.h"
 
 #include <math.h>
@@ -106,8 +107,8 @@ static void add_row(float *restrict row, const float *restrict more, int n)
 }
 
 /* Spreads a plane down and up its rows. room: as large as the plane; come: as long as a row. */
-static void spread_rows(float *plane, const float *mask, int width, int height, float share,
-                        float *room, float *come)
+static inline void spread_plane(float *plane, const float *mask, int width, int height, float share,
+                                float *room, float *come)
 {
     const int n = width * height;
     memcpy(room, plane, (size_t)n * sizeof *room);
@@ -121,6 +122,11 @@ static void spread_rows(float *plane, const float *mask, int width, int height, 
         add_row(room + i, come, width);
     }
 }
+
+FL_FOR_EACH_CPU(spread_rows, spread_plane,
+                (float *plane, const float *mask, int width, int height, float share, float *room,
+                 float *come),
+                (plane, mask, width, height, share, room, come))
 
 /* The recursive filter of [GO11] with a deviation of sigma_px of the page, not normalised. */
 static void spread(const FlWashField *field, float *plane, float sigma_px)

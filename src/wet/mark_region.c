@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/curves.h"
+#include "base/windows.h"
 #include "guides/distance.h"
 #include "guides/guides.h"
 #include <math.h>
@@ -106,24 +107,29 @@ static int lies_lowest(uint16_t lowest, int region)
     return lowest == 0 || lowest > region;
 }
 
-/** Marks the cells in which a region lies on bare paper: bit 0 now; bit 1 before, and there also a
- * limb's half width below other figures: a limb that leaves shows no hole in a stain. */
+/** Marks the cells in which a region lies on bare paper: bit 0 now; bit 1 before, and there also
+ * about a limb's half width below other figures: a limb that leaves shows no hole in a stain. */
 static bool find_touches(const FlWet *wet, int region, Planes *planes, GError **error)
 {
     const FlRect rect = planes->rect;
-    g_autofree uint8_t *bare = fl_alloc_unset(fl_rect_pixels(rect), 1, "bare paper", error);
-    for (int y = 0; y < rect.height && bare; y++)
+    const int reach = (int)(0.9f * LIMB_PX * wet->sheet.px + 0.5f);
+    const char *what = "bare paper";
+    g_autofree int16_t *bare = fl_alloc_unset(fl_rect_pixels(rect), sizeof *bare, what, error);
+    g_autofree uint32_t *near =
+        bare ? fl_alloc_unset(fl_rect_pixels(rect), sizeof *near, what, error) : NULL;
+    if (!near)
+        return false;
+    for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
             const size_t cell =
                 (size_t)(rect.y + y) * (size_t)wet->sheet.page.width + (size_t)(rect.x + x);
             const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
             planes->touches[p] = (uint8_t)lies_lowest(wet->lowest[0][cell], region);
-            bare[p] = lies_lowest(wet->lowest[1][cell], region) ? 255 : 0;
+            bare[p] = (int16_t)lies_lowest(wet->lowest[1][cell], region);
         }
-    if (!bare || !fl_distance(bare, rect.width, rect.height, planes->beyond, error))
-        return false;
+    fl_window_sums(bare, rect, reach, near);
     for (size_t p = 0; p < fl_rect_pixels(rect); p++)
-        planes->touches[p] |= (uint8_t)((planes->beyond[p] > -LIMB_PX * wet->sheet.px) << 1);
+        planes->touches[p] |= near[p] > 0 ? 2 : 0;
     return true;
 }
 
