@@ -1,8 +1,6 @@
 #include "io/png.h"
-#include "style/border.h"
 #include "style/estimate.h"
-#include "style/flat_field.h"
-#include "style/stabilise.h"
+#include "style/recording.h"
 #include "style/style_folder.h"
 
 #include <fluidy/style.h>

@@ -1,7 +1,6 @@
 /* The page to look at: what is written into it. */
 #include "base/json.h"
-#include "inspect/flicker.h"
-#include "inspect/followed_point.h"
+#include "inspect/region_watch.h"
 #include "inspect/page_script.h"
 #include <math.h>
 #include <string.h>

@@ -20,6 +20,12 @@ static inline float fl_smooth(float x)
     return t * t * (3 - 2 * t);
 }
 
+/** A smooth step: 0 up to `low`, 1 from `high` on, which is larger. */
+static inline float fl_smooth_between(float low, float high, float x)
+{
+    return fl_smooth((x - low) / (high - low));
+}
+
 /** A smooth step: 0 up to `from`, 1 from `to` on. */
 static inline float fl_ease(float from, float to, float x)
 {

@@ -88,7 +88,7 @@ bool fl_file_read(const char *path, size_t most, const FlFileWait *wait, char **
     return true;
 }
 
-static int by_name(const void *a, const void *b)
+int fl_by_name(const void *a, const void *b)
 {
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
@@ -104,7 +104,7 @@ GPtrArray *fl_folder_names(const char *folder, GError **error)
     GPtrArray *names = g_ptr_array_new_with_free_func(g_free);
     for (const char *name; (name = g_dir_read_name(dir));)
         g_ptr_array_add(names, g_strdup(name));
-    g_ptr_array_sort(names, by_name);
+    g_ptr_array_sort(names, fl_by_name);
     return names;
 }
 

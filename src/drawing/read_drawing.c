@@ -1,3 +1,4 @@
+#include "base/file.h"
 #include "base/rect.h"
 #include "drawing/drawing_data.h"
 #include "drawing/region_identity.h"
@@ -114,16 +115,11 @@ int fl_drawing_limbs(const FlDrawing *drawing, int region, int frame, FlLimb *li
     return n;
 }
 
-static int by_name(const void *a, const void *b)
-{
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
 const char **fl_drawing_linked_files(const FlDrawing *drawing)
 {
     guint n;
     const char **paths = (const char **)g_hash_table_get_keys_as_array(drawing->files, &n);
-    qsort(paths, n, sizeof *paths, by_name);
+    qsort(paths, n, sizeof *paths, fl_by_name);
     return paths;
 }
 

@@ -376,26 +376,6 @@ static const FlSequenceFrame *look_up(const GArray *found, int number, bool hold
     return hold ? before : NULL;
 }
 
-/** "7-9, 12 and 3 more" */
-static char *list_numbers(const GArray *numbers)
-{
-    GString *text = g_string_new(NULL);
-    guint i = 0;
-    for (int parts = 0; i < numbers->len && parts < 6; parts++) {
-        guint j = i;
-        const int *n = &g_array_index(numbers, int, 0);
-        while (j + 1 < numbers->len && n[j + 1] == n[j] + 1)
-            j++;
-        g_string_append_printf(text, "%s%d", i ? ", " : "", n[i]);
-        if (j > i)
-            g_string_append_printf(text, "-%d", n[j]);
-        i = j + 1;
-    }
-    if (i < numbers->len)
-        g_string_append_printf(text, " and %u more", numbers->len - i);
-    return g_string_free(text, FALSE);
-}
-
 static char *shared_name(const FlSequenceFrame *first)
 {
     g_autofree char *base = g_path_get_basename(first->file);
@@ -474,10 +454,10 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
                                                  .stand_in = f->number != number,
                                                  .layer = f->layer};
     }
-    g_autofree char *list = list_numbers(gaps);
+    g_autofree char *list = fl_range_text(gaps);
     if (s->n == 0) {
         g_autoptr(GArray) numbers = numbers_of(found);
-        g_autofree char *there = list_numbers(numbers);
+        g_autofree char *there = fl_range_text(numbers);
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
                     "%s: no file for frame%s %s; expected some of %s", pattern,
                     gaps->len > 1 ? "s" : "", list, there);

@@ -1,11 +1,9 @@
 #include "inspect/report.h"
 
 #include "base/json.h"
-#include "inspect/exemplar_use.h"
-#include "inspect/flicker.h"
-#include "inspect/followed_point.h"
 #include "inspect/guide_pictures.h"
 #include "inspect/page_script.h"
+#include "inspect/region_watch.h"
 #include "inspect/stats.h"
 #include "io/atomic_file.h"
 #include "params/text.h"

@@ -269,3 +269,22 @@ GArray *fl_range_parse(const char *range, int film_first, int film_last, GError 
     g_array_set_size(numbers, kept);
     return numbers;
 }
+
+char *fl_range_text(const GArray *numbers)
+{
+    GString *text = g_string_new(NULL);
+    guint i = 0;
+    for (int parts = 0; i < numbers->len && parts < 6; parts++) {
+        guint j = i;
+        const int *n = &g_array_index(numbers, int, 0);
+        while (j + 1 < numbers->len && n[j + 1] == n[j] + 1)
+            j++;
+        g_string_append_printf(text, "%s%d", i ? ", " : "", n[i]);
+        if (j > i)
+            g_string_append_printf(text, "-%d", n[j]);
+        i = j + 1;
+    }
+    if (i < numbers->len)
+        g_string_append_printf(text, " and %u more", numbers->len - i);
+    return g_string_free(text, FALSE);
+}

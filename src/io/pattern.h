@@ -64,4 +64,7 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlPattern, fl_pattern_clear)
  */
 GArray *fl_range_parse(const char *range, int first, int last, GError **error);
 
+/** Numbers in their order as text, such as "7-9, 12 and 3 more", to be freed. */
+char *fl_range_text(const GArray *numbers);
+
 #endif

@@ -3,7 +3,6 @@
 #include "base/json.h"
 #include "io/atomic_file.h"
 #include "io/pattern.h"
-#include "job/paint_files.h"
 
 bool fl_frame_has_picture(const FlOutputs *out)
 {

@@ -1,4 +1,4 @@
-#include "job/paint_files.h"
+#include "job/outputs.h"
 
 #include "base/alloc.h"
 #include "base/error.h"

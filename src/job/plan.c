@@ -6,7 +6,7 @@
 #include "base/page.h"
 #include "drawing/drawing.h"
 #include "io/pattern.h"
-#include "job/paint_files.h"
+#include "job/outputs.h"
 #include "keep/sealed.h"
 #include "params/options.h"
 #include <math.h>

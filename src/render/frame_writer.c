@@ -5,7 +5,7 @@
 #include "io/png.h"
 #include "io/provenance.h"
 #include "io/sink.h"
-#include "job/paint_files.h"
+#include "job/outputs.h"
 
 #define SHEET "paper_sheet" // region names have no underscore
 #define GROUND "paper_ground"

@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/rng.h"
-#include "job/paint_files.h"
+#include "job/outputs.h"
 #include <math.h>
 #include <string.h>
 

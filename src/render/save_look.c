@@ -39,11 +39,6 @@ static bool add_file(Packing *packing, const char *path, const char *name, GErro
            fl_limit_check(FL_LIMIT_LOOK, ceil(packing->bytes / (1 << 20)), path, error);
 }
 
-static int by_name(const void *a, const void *b)
-{
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
 /* Adds the regular files of a folder. */
 static bool add_folder(Packing *packing, const char *folder, const char *name, GError **error)
 {
@@ -51,7 +46,7 @@ static bool add_folder(Packing *packing, const char *folder, const char *name, G
     g_autoptr(GPtrArray) files = g_ptr_array_new_with_free_func(g_free);
     for (const char *file; dir && (file = g_dir_read_name(dir));)
         g_ptr_array_add(files, g_strdup(file));
-    g_ptr_array_sort(files, by_name);
+    g_ptr_array_sort(files, fl_by_name);
     for (guint k = 0; k < files->len; k++) {
         const char *file = files->pdata[k];
         g_autofree char *path = g_build_filename(folder, file, NULL);

@@ -1,4 +1,4 @@
-#include "style/border.h"
+#include "style/estimate.h"
 
 #include "base/alloc.h"
 #include "guides/distance.h"

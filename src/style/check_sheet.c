@@ -1,4 +1,4 @@
-#include "style/check_sheet.h"
+#include "style/measure.h"
 
 #include "base/surface.h"
 #include "io/contact_sheet.h"

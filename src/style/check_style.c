@@ -1,8 +1,8 @@
 /* Checks a style: reports what was read and measured, and what will paint badly. */
 #include "base/error.h"
 #include "base/memory.h"
+#include "io/pattern.h"
 #include "params/text.h"
-#include "style/check_sheet.h"
 #include "style/estimate.h"
 #include "style/manifest.h"
 #include "style/measure.h"
@@ -69,13 +69,9 @@ static void add_given_facts(Check *check)
 static float median_over_frames(const FlMeasures *measures, size_t field)
 {
     g_autofree float *value = g_new(float, measures->n_frames);
-    for (int i = 0; i < measures->n_frames; i++) {
-        const float v = *(const float *)((const char *)&measures->frame[i] + field);
-        int k = i;
-        for (; k > 0 && value[k - 1] > v; k--)
-            value[k] = value[k - 1];
-        value[k] = v;
-    }
+    for (int i = 0; i < measures->n_frames; i++)
+        value[i] = *(const float *)((const char *)&measures->frame[i] + field);
+    qsort(value, (size_t)measures->n_frames, sizeof *value, fl_compare_floats);
     return value[measures->n_frames / 2];
 }
 
@@ -184,24 +180,14 @@ static void add_measured_facts(Check *check)
     add(facts, "life       paint changes by %.1f levels from frame to frame", MEDIAN(m, change));
 }
 
-/* "4-9, 12" of the frames for which a test fails, from `first` on, counted from 1; NULL if all
- * pass. */
+/* The frames for which a test fails, from `first` on, counted from 1; NULL if all pass. */
 static char *failing_frames(const FlMeasures *measures, int first, size_t field, float least)
 {
-    GString *list = g_string_new(NULL);
-    for (int i = first; i < measures->n_frames; i++) {
-        int end = i;
-        while (end < measures->n_frames &&
-               *(const float *)((const char *)&measures->frame[end] + field) < least)
-            end++;
-        if (end == i)
-            continue;
-        g_string_append_printf(list, "%s%d", list->len ? ", " : "", i + 1);
-        if (end > i + 1)
-            g_string_append_printf(list, "-%d", end);
-        i = end;
-    }
-    return g_string_free(list, list->len == 0);
+    g_autoptr(GArray) failing = g_array_new(FALSE, FALSE, sizeof(int));
+    for (int i = first + 1; i <= measures->n_frames; i++)
+        if (*(const float *)((const char *)&measures->frame[i - 1] + field) < least)
+            g_array_append_val(failing, i);
+    return failing->len > 0 ? fl_range_text(failing) : NULL;
 }
 
 static void find_frame_problems(Check *check)

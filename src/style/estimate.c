@@ -4,7 +4,6 @@
 #include "guides/blur.h"
 #include "guides/connected_parts.h"
 #include "guides/gauss.h"
-#include "style/flat_field.h"
 
 #include <math.h>
 #include <string.h>

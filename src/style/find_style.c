@@ -1,5 +1,6 @@
 #include "style/style_folder.h"
 
+#include "base/file.h"
 #include "base/suggest.h"
 #include "config.h"
 #include "style/manifest.h"
@@ -72,11 +73,6 @@ static void free_entry(void *data)
     g_free(entry);
 }
 
-static int compare_strings(const void *a, const void *b)
-{
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
 /* What the style.ini of a folder says; nothing if it is missing or broken. */
 static FlStyle *read_manifest(const char *folder)
 {
@@ -103,7 +99,7 @@ GPtrArray *fl_style_list(void)
     for (int i = 0; folders[i]; i++) {
         g_autoptr(GPtrArray) names = g_ptr_array_new_with_free_func(g_free);
         collect_names(folders[i], names);
-        g_ptr_array_sort(names, compare_strings);
+        g_ptr_array_sort(names, fl_by_name);
         for (guint k = 0; k < names->len; k++) {
             const char *name = g_ptr_array_index(names, k);
             FlStyleEntry *entry = g_new(FlStyleEntry, 1);

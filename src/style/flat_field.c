@@ -1,4 +1,4 @@
-#include "style/flat_field.h"
+#include "style/estimate.h"
 
 #include <math.h>
 #include <string.h>

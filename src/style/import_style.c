@@ -2,13 +2,10 @@
 #include "base/memory.h"
 #include "io/ffmpeg.h"
 #include "params/text.h"
-#include "style/border.h"
 #include "style/estimate.h"
-#include "style/flat_field.h"
 #include "style/manifest.h"
 #include "style/paint_frames.h"
 #include "style/recording.h"
-#include "style/stabilise.h"
 #include "style/write_style.h"
 
 #include <math.h>

@@ -5,7 +5,6 @@
 #include "guides/flow_file.h"
 #include "io/picture_series.h"
 #include "io/png.h"
-#include "style/border.h"
 #include "style/estimate.h"
 #include "style/manifest.h"
 #include "style/paint_frames.h"

@@ -267,7 +267,7 @@ static void measure_blocks(const FlStyle *style, FlMeasures *measures)
         }
 }
 
-static int compare_floats(const void *a, const void *b)
+int fl_compare_floats(const void *a, const void *b)
 {
     const float p = *(const float *)a, q = *(const float *)b;
     return (p > q) - (p < q);
@@ -294,7 +294,7 @@ static void measure_light(const FlStyle *style, FlMeasures *measures)
         }
     if (mean->len == 0)
         return;
-    g_array_sort(mean, compare_floats);
+    g_array_sort(mean, fl_compare_floats);
     const float *sorted = (const float *)mean->data;
     measures->paper_range = sorted[mean->len - 1 - mean->len / 20] - sorted[mean->len / 20];
 }

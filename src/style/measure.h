@@ -44,8 +44,29 @@ typedef struct FlMeasures {
 /** Measures a style. NULL with FL_ERROR_NO_MEMORY or an error of the guides set. */
 FlMeasures *fl_measure(const FlStyle *style, const FlGuideSequence *sequence, GError **error);
 
+/** Compares two floats, for sorting. */
+int fl_compare_floats(const void *a, const void *b);
+
 void fl_measures_free(FlMeasures *measures); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlMeasures, fl_measures_free)
+
+/* ---- the sheet of fluidy-style check --------------------------------------------------------- */
+
+/** The content of a sheet; all of it belongs to the caller. */
+typedef struct FlCheckSheet {
+    const FlStyle *style;
+    const FlMeasures *measures;
+    const FlGuideSequence *guides;
+    const GPtrArray *facts;    // (element-type char*) lines
+    const GPtrArray *problems; // (element-type char*) lines
+} FlCheckSheet;
+
+/**
+ * Draws frames with mask outline and border, the flow as arrows, histograms, facts and problems
+ * into a PNG file. Returns: false with FL_ERROR_OUTPUT, FL_ERROR_NO_MEMORY, FL_ERROR_LIMIT or
+ * an error of the guides set.
+ */
+bool fl_check_sheet_write(const FlCheckSheet *sheet, const char *path, GError **error);
 
 #endif

@@ -1,8 +1,10 @@
-/* A recording to import: a video, a still, numbered pictures or a folder of them. */
+/* A recording to import: a video, a still, numbered pictures or a folder of them; and its shake. */
 #ifndef FLUIDY_STYLE_RECORDING_H
 #define FLUIDY_STYLE_RECORDING_H
 
+#include "base/picture.h"
 #include "io/picture_series.h"
+#include "style/estimate.h"
 #include <fluidy/style.h>
 
 typedef struct FlRecording {
@@ -32,5 +34,32 @@ void fl_recording_free(FlRecording *source); // NULL is fine
 GPtrArray *fl_recording_read(FlRecording *source, const FlStyleImport *import, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlRecording, fl_recording_free)
+
+/* ---- shake ----------------------------------------------------------------------------------- */
+
+/** The displacement of a frame's content from its position in the first frame, px, right and down.
+ */
+typedef struct FlShift {
+    float x, y;
+} FlShift;
+
+/**
+ * Finds the shift of every frame from the places that no mask ever covers: paper texture, pencil
+ * marks, the sheet's edge. A shift that does not bring a frame clearly nearer to the first is 0.
+ * `shift` has n_frames elements; the first is 0. Shakes of up to 8 px are found.
+ *
+ * Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_shake_estimate(const FlClip *clip, const uint8_t *mask, FlShift *shift, GError **error);
+
+/** The longest of the shifts, in either axis, px. */
+float fl_shake_extent(const FlShift *shift, int n_frames);
+
+/**
+ * Moves a plane by -shift in place: `channels` interleaved bytes, cubic between pixels, the rim
+ * repeated. Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_shake_undo(uint8_t *plane, int width, int height, int channels, FlShift shift,
+                   GError **error);
 
 #endif

@@ -1,4 +1,4 @@
-#include "style/stabilise.h"
+#include "style/recording.h"
 
 #include "base/alloc.h"
 #include "base/curves.h"

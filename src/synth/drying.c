@@ -23,11 +23,6 @@
 #define RIM 9.0f        // units: how wide it is
 #define BESIDE 3.0f     // units outside the contour: there an edge meets paper or paint
 
-static float smoothstep(float low, float high, float v)
-{
-    return fl_smooth((v - low) / (high - low));
-}
-
 /* The motion of contour and paint at a pixel. */
 typedef struct Place {
     float band;        // 1 at the contour, 0 inside
@@ -47,7 +42,7 @@ int fl_wet_at_rest(const FlGuides *guides, size_t pixel, float unit_px, bool pla
 
 static float edge_of(float units)
 {
-    return units > STILL ? (1 - expf(-units / FULL)) * smoothstep(STILL, SURE, units) : 0;
+    return units > STILL ? (1 - expf(-units / FULL)) * fl_smooth_between(STILL, SURE, units) : 0;
 }
 
 /* The share of bare paper just outside the contour, along the gradient g of the depth: at edges
@@ -59,8 +54,8 @@ static float bare_beside(const FlDrying *drying, size_t p, int x, int y, const f
     const float out = (guides->distance[p] + BESIDE * drying->unit_px) / MAX(length, 0.1f);
     const int i = CLAMP(x - (int)lrintf(out * g[0]), 0, guides->width - 1);
     const int j = CLAMP(y - (int)lrintf(out * g[1]), 0, guides->height - 1);
-    return smoothstep(0.1f, 0.9f,
-                      (float)guides->bare[(size_t)j * (size_t)guides->width + (size_t)i] / 255);
+    return fl_smooth_between(
+        0.1f, 0.9f, (float)guides->bare[(size_t)j * (size_t)guides->width + (size_t)i] / 255);
 }
 
 /* The flow that is constructed from the masks is the contour's own motion near the contour. */
@@ -133,7 +128,7 @@ static int next_age(const FlDrying *drying, size_t p, int x, int y)
 static uint8_t tone_of(const FlDrying *drying, const Place *place, int wet, float depth)
 {
     const float at = MAX(depth, 0) / (RIM * drying->unit_px);
-    const float pale = PALE * smoothstep(DRY_AT, FRESH_AT, (float)wet / FL_WET);
+    const float pale = PALE * fl_smooth_between(DRY_AT, FRESH_AT, (float)wet / FL_WET);
     const float tone = 1 + drying->wets * (GATHERS * place->trail * expf(-at * at) - pale);
     return (uint8_t)(FL_TONE_ONE * tone + 0.5f);
 }
@@ -210,7 +205,7 @@ static FlMatch in_frame(const FlExemplar *exemplar, FlMatch m, int frame)
     const int x = fl_match_x(m), y = fl_match_y(m), width = level->width;
     const size_t at = (size_t)y * (size_t)width + (size_t)x;
     const float depth = distances(exemplar, m.frame)[at];
-    const float beside = 1 - smoothstep(exemplar->border_px, 2 * exemplar->border_px, depth);
+    const float beside = 1 - fl_smooth_between(exemplar->border_px, 2 * exemplar->border_px, depth);
     m.frame = (int16_t)frame;
     if (beside <= 0)
         return m;

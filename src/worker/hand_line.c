@@ -1,6 +1,7 @@
 #include "worker/hand_line.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
 #include "base/noise.h"
 #include "base/page.h"
 #include "base/rng.h"
@@ -48,12 +49,6 @@ static bool nearest_init(Nearest *nearest, FlRect box, GError **error)
     for (size_t i = 0; i < n; i++)
         nearest->square[i] = FAR;
     return true;
-}
-
-static float smooth(float x, float low, float high)
-{
-    const float t = CLAMP((x - low) / (high - low), 0, 1);
-    return t * t * (3 - 2 * t);
 }
 
 /* ---- places ---------------------------------------------------------------------------------- */
@@ -116,7 +111,8 @@ static float noise_at(uint64_t key, const FlLinePath *path, float far, float asi
     const float v = aside / across + .37f;
     const float n = fl_noise(key, far / wave, v);
     const float blend = fminf(path->length / 2, 1.5f * wave);
-    const float b = path->closed && blend > 0 ? smooth(far, path->length - blend, path->length) : 0;
+    const float b =
+        path->closed && blend > 0 ? fl_smooth_between(path->length - blend, path->length, far) : 0;
     if (b <= 0)
         return n;
     const float again = fl_noise(key, (far - path->length) / wave, v);
@@ -145,8 +141,9 @@ static float grain_at(const FlHandLine *hand, const FlLinePath *path, float far,
     float sum = 0, squares = 0, size = 8;
     for (int k = COARSEST; k <= FINEST; k++, size /= 2) {
         const float px = size * unit, ratio = px / wanted;
-        const float weight = smooth(ratio, .3f, .8f) * (1 - smooth(ratio, 1.1f, 3)) *
-                             smooth(px, .5f * FINEST_PX, FINEST_PX);
+        const float weight = fl_smooth_between(.3f, .8f, ratio) *
+                             (1 - fl_smooth_between(1.1f, 3, ratio)) *
+                             fl_smooth_between(.5f * FINEST_PX, FINEST_PX, px);
         if (weight <= 0)
             continue;
         const uint64_t key = fl_key(fl_key(hand->key, GRAIN), (uint64_t)(k - COARSEST));
@@ -168,7 +165,7 @@ static float tooth_at(const FlTooth *tooth, int x, int y)
 static float taper_at(const FlLineKind *kind, const FlLinePath *path, float far)
 {
     const float over = fminf(kind->taper, path->length / 3);
-    const float thinner = (1 - kind->tip) * smooth(path->length, 4, 10);
+    const float thinner = (1 - kind->tip) * fl_smooth_between(4, 10, path->length);
     float share = 1;
     for (int end = 0; end < 2 && !path->closed && over > 0; end++) {
         const float t = 1 - CLAMP((end ? path->length - far : far) / over, 0, 1);
@@ -196,7 +193,7 @@ static float width_at(const FlHandLine *hand, const FlLinePath *path, float far,
 {
     const FlLineKind *kind = hand->kind;
     const float half = hand->paths->unit_px / 2, d = fminf(fabsf(aside), half + .25f);
-    const float fine = smooth(kind->rough_wave * hand->paths->unit_px, 1, FINEST_PX);
+    const float fine = fl_smooth_between(1, FINEST_PX, kind->rough_wave * hand->paths->unit_px);
     const int side = SIDE + (aside < 0);
     const float thin = play_at(hand, PLAY, path, far, kind->wave);
     float share = 1 - kind->play * thin * thin; // mostly the drawing's width
@@ -211,7 +208,7 @@ static float deposit(const FlHandLine *hand, float load, float grain, int x, int
     if (load >= AMPLE)
         return hand->kind->opacity;
     const float tooth = hand->kind->tooth * tooth_at(&hand->tooth, x, y);
-    return hand->kind->opacity * smooth(load + hand->kind->grain * grain + tooth, 0, 1);
+    return hand->kind->opacity * fl_smooth_between(0, 1, load + hand->kind->grain * grain + tooth);
 }
 
 static float line_pixel(const FlHandLine *hand, const FlLinePath *path, const Nearest *nearest,
@@ -320,7 +317,7 @@ static float detail_of(const FlHandLine *hand)
         x0 = fminf(x0, point[k].x), x1 = fmaxf(x1, point[k].x);
         y0 = fminf(y0, point[k].y), y1 = fmaxf(y1, point[k].y);
     }
-    return 1 - smooth(fmaxf(x1 - x0, y1 - y0) / (FL_PAGE_PX * hand->page), SMALL, LARGE);
+    return 1 - fl_smooth_between(SMALL, LARGE, fmaxf(x1 - x0, y1 - y0) / (FL_PAGE_PX * hand->page));
 }
 
 /** The px by which the edge of a shape is drawn in at a place of its outline. */

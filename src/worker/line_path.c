@@ -1,4 +1,4 @@
-#include "worker/line_path.h"
+#include "worker/hand_line.h"
 
 #include <math.h>
 

@@ -2,8 +2,61 @@
 #ifndef FLUIDY_WORKER_PROBE_H
 #define FLUIDY_WORKER_PROBE_H
 
+#include "worker/frame_parts.h"
 #include "worker/raster.h"
-#include "worker/self_check.h"
+
+/** The composite of the leaves of one frame. */
+typedef struct FlSelfCheck FlSelfCheck;
+
+typedef enum FlVerdict {
+    FL_VERDICT_ERROR, // of the caller's GError
+    FL_VERDICT_ALIKE,
+    FL_VERDICT_DIFFERS,
+} FlVerdict;
+
+FlSelfCheck *fl_self_check_new(int width, int height, GError **error);
+void fl_self_check_free(FlSelfCheck *check); // NULL is fine
+
+/** Draws the next part over; coverage is its A8 rendering, not 0 in `box` only. */
+bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSurveyPart *part,
+                       cairo_surface_t *coverage, FlRect box, FlPageSize page, GError **error);
+
+/**
+ * Compares with the file as it is, whether they differ visibly.
+ *
+ * If they do, *group becomes the id of the smallest group around the topmost part of the worst
+ * place that by itself does not look as its leaves do, to be freed; NULL if there is none. If that
+ * part's shape does not look as its fill and stroke do, *group is the shape and all others like it,
+ * by fl_leaf_key(), one a line. *leaf becomes that part's id in the file, which is the frame's;
+ * NULL if it has none or nothing is drawn there.
+ */
+FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, FlPageSize page, char **group,
+                               const char **leaf, GError **error);
+
+/**
+ * Returns: true if edges of masks are visibly harder than in the file. Each shape is masked by
+ * itself, so that half-transparent pixels are drawn twice if two shapes overlap.
+ */
+bool fl_self_check_has_hard_masks(const FlSelfCheck *check);
+
+/** True if the difference is too large to paint the frame from its leaves. */
+bool fl_self_check_is_gross(const FlSelfCheck *check);
+
+/** A part to be drawn by fl_looks_alike(). */
+typedef struct FlPiece {
+    const FlLeaf *leaf;
+    FlPart part;
+    FlBlendMode blend_mode;
+} FlPiece;
+
+/**
+ * Compares a group with its n pieces drawn over each other one by one. Groups with opacity or a
+ * mask look the same if no pieces overlap, and nearly so where a mask has sharp edges; pixels that
+ * differ at a mask's edge will not count in fl_self_check_finish().
+ * Returns: 1 if they look the same, else 0; -1 with an error.
+ */
+int fl_looks_alike(FlSelfCheck *check, FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n,
+                   FlPageSize page, GError **error);
 
 /** A part under construction: as FlSurveyPart, but its strings still belong to the frame. */
 typedef struct FlProbe {

@@ -1,4 +1,4 @@
-#include "worker/self_check.h"
+#include "worker/probe.h"
 
 #include <stdlib.h>
 #include <string.h>
