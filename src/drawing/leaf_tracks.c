@@ -67,10 +67,9 @@ typedef struct Follow {
     GArray *tracks;
 } Follow;
 
-static void follow_on(Follow *f, int t, int i, int track, int *row)
+static void follow_on(Follow *f, int t, FlSurveyPart *part, int track)
 {
     FlTrack *tr = &g_array_index(f->tracks, FlTrack, track);
-    const FlSurveyPart *part = &g_array_index(f->survey->frame[t].parts, FlSurveyPart, i);
     const int change[2] = {t, part->paint};
     if (tr->paints->len == 0)
         memcpy(tr->rgb, part->rgb, sizeof tr->rgb);
@@ -79,16 +78,19 @@ static void follow_on(Follow *f, int t, int i, int track, int *row)
         tr->drift = MAX(tr->drift, fl_colour_difference(tr->rgb, part->rgb));
     }
     g_array_append_vals(tr->paints, change, 2);
+    part->nth = track;
     tr->last = *part;
     tr->last_frame = t;
-    row[i] = track;
 }
 
-static void new_track(Follow *f, int t, int i, int *row)
+static void new_track(Follow *f, int t, FlSurveyPart *part)
 {
-    const FlTrack track = {.paints = g_array_new(FALSE, FALSE, sizeof(int)), .last_frame = -1};
+    const FlTrack track = {.paints = g_array_new(FALSE, FALSE, sizeof(int)),
+                           .last_frame = -1,
+                           .rule = -1,
+                           .is_hair = true};
     g_array_append_val(f->tracks, track);
-    follow_on(f, t, i, (int)f->tracks->len - 1, row);
+    follow_on(f, t, part, (int)f->tracks->len - 1);
 }
 
 static bool comparable(const Follow *f, const FlSurveyPart *a, const FlSurveyPart *b)
@@ -111,7 +113,7 @@ static gboolean exact_equal(gconstpointer p, gconstpointer q)
 }
 
 /** Continues tracks by leaves that kept paint and place in the document, and hardly moved. */
-static void pair_exactly(Follow *f, int t, int *row)
+static void pair_exactly(Follow *f, int t)
 {
     g_autoptr(GHashTable) known = g_hash_table_new(exact_hash, exact_equal);
     for (guint k = 0; k < f->tracks->len; k++)
@@ -124,23 +126,23 @@ static void pair_exactly(Follow *f, int t, int *row)
             GPOINTER_TO_INT(g_hash_table_lookup(known, &g_array_index(parts, FlSurveyPart, i)));
     for (guint i = 0; i < parts->len; i++) {
         const FlTrack *track = found[i] ? &g_array_index(f->tracks, FlTrack, found[i] - 1) : NULL;
-        const float *box = g_array_index(parts, FlSurveyPart, i).box;
-        if (row[i] < 0 && track && track->last_frame < t && overlap(track->last.box, box) >= STAYS)
-            follow_on(f, t, (int)i, found[i] - 1, row);
+        FlSurveyPart *s = &g_array_index(parts, FlSurveyPart, i);
+        if (track && track->last_frame < t && overlap(track->last.box, s->box) >= STAYS)
+            follow_on(f, t, s, found[i] - 1);
     }
 }
 
-static int count_unpaired(const int *row, guint n)
+static int count_unpaired(const GArray *parts)
 {
     int left = 0;
-    for (guint i = 0; i < n; i++)
-        left += row[i] < 0;
+    for (guint i = 0; i < parts->len; i++)
+        left += g_array_index(parts, FlSurveyPart, i).nth < 0;
     return left;
 }
 
 /** Pairs those of the remaining leaves that are as alike as `least` or more, the most alike first.
  */
-static void pair_alike(Follow *f, int t, float least, int *row)
+static void pair_alike(Follow *f, int t, float least)
 {
     GArray *parts = f->survey->frame[t].parts;
     g_autoptr(GArray) pairs = g_array_new(FALSE, FALSE, sizeof(Pair));
@@ -148,7 +150,7 @@ static void pair_alike(Follow *f, int t, float least, int *row)
         const FlTrack *track = &g_array_index(f->tracks, FlTrack, k);
         for (guint i = 0; i < parts->len && track->last_frame < t; i++) {
             const FlSurveyPart *s = &g_array_index(parts, FlSurveyPart, i);
-            if (row[i] >= 0 || !comparable(f, &track->last, s))
+            if (s->nth >= 0 || !comparable(f, &track->last, s))
                 continue;
             const float like = likeness(&track->last, s);
             const Pair pair = {like - (track->last_frame < t - 1 ? 0.5f : 0), (int)k, (int)i};
@@ -159,8 +161,9 @@ static void pair_alike(Follow *f, int t, float least, int *row)
     g_array_sort(pairs, compare_pairs);
     for (guint p = 0; p < pairs->len; p++) {
         const Pair *pair = &g_array_index(pairs, Pair, p);
-        if (row[pair->part] < 0 && g_array_index(f->tracks, FlTrack, pair->track).last_frame < t)
-            follow_on(f, t, pair->part, pair->track, row);
+        FlSurveyPart *s = &g_array_index(parts, FlSurveyPart, pair->part);
+        if (s->nth < 0 && g_array_index(f->tracks, FlTrack, pair->track).last_frame < t)
+            follow_on(f, t, s, pair->track);
     }
 }
 
@@ -169,27 +172,25 @@ static void track_clear(void *data)
     g_array_unref(((FlTrack *)data)->paints);
 }
 
-GArray *fl_leaf_tracks_find(const FlSurvey *survey, const int *label_of, int ***track_of)
+GArray *fl_leaf_tracks_find(const FlSurvey *survey, const int *label_of)
 {
     // Once leaves of the same paint at the same place in the document are paired, few are left.
     static const float alike[] = {7, 6, -1};
     Follow f = {survey, label_of, g_array_new(FALSE, FALSE, sizeof(FlTrack))};
     g_array_set_clear_func(f.tracks, track_clear);
-    *track_of = g_new0(int *, survey->n_frames);
     for (int t = 0; t < survey->n_frames; t++) {
-        const guint n = survey->frame[t].parts->len;
-        int *row = (*track_of)[t] = g_new(int, n + 1);
-        for (guint i = 0; i < n; i++)
-            row[i] = -1;
-        pair_exactly(&f, t, row);
+        GArray *parts = survey->frame[t].parts;
+        for (guint i = 0; i < parts->len; i++)
+            g_array_index(parts, FlSurveyPart, i).nth = -1;
+        pair_exactly(&f, t);
         for (int k = 0; k < (int)G_N_ELEMENTS(alike); k++) {
-            const int left = count_unpaired(row, n);
+            const int left = count_unpaired(parts);
             if (left > 0 && left < TOO_MANY)
-                pair_alike(&f, t, alike[k], row);
+                pair_alike(&f, t, alike[k]);
         }
-        for (guint i = 0; i < n; i++)
-            if (row[i] < 0)
-                new_track(&f, t, (int)i, row);
+        for (guint i = 0; i < parts->len; i++)
+            if (g_array_index(parts, FlSurveyPart, i).nth < 0)
+                new_track(&f, t, &g_array_index(parts, FlSurveyPart, i));
     }
     return f.tracks;
 }

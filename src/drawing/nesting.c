@@ -47,20 +47,19 @@ static void find_levels(const GArray *frame, const int *label_of, float least, i
     }
 }
 
-int *fl_nesting(const FlSurvey *survey, int *const *track_of, const int *label_of, int n_tracks)
+void fl_find_nesting(const FlSurvey *survey, const int *label_of, GArray *tracks)
 {
     const float least = LARGE * (float)survey->width * (float)survey->height;
-    int(*count)[DEEPEST + 1] = g_malloc0_n((gsize)n_tracks + 1, sizeof *count);
-    int *depth = g_new0(int, n_tracks + 1);
+    int(*count)[DEEPEST + 1] = g_malloc0_n((gsize)tracks->len + 1, sizeof *count);
     for (int t = 0; t < survey->n_frames; t++) {
         const GArray *frame = survey->frame[t].parts;
         g_autofree int *level = g_new0(int, frame->len + 1);
         if (frame->len <= TOO_MANY)
             find_levels(frame, label_of, least, level);
         for (guint i = 0; i < frame->len; i++)
-            count[track_of[t][i]][level[i]]++;
+            count[g_array_index(frame, FlSurveyPart, i).nth][level[i]]++;
     }
-    for (int k = 0; k < n_tracks; k++) {
+    for (guint k = 0; k < tracks->len; k++) {
         int best = 1, nested = 0;
         for (int l = 1; l <= DEEPEST; l++) {
             nested += count[k][l];
@@ -69,8 +68,7 @@ int *fl_nesting(const FlSurvey *survey, int *const *track_of, const int *label_o
         const int frames = nested + count[k][0];
         if ((float)nested >= ALWAYS * (float)frames &&
             (float)frames >= MOSTLY * (float)survey->n_frames)
-            depth[k] = best; // the most frequent
+            g_array_index(tracks, FlTrack, k).depth = best; // the most frequent
     }
     g_free(count);
-    return depth;
 }

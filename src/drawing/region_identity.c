@@ -23,13 +23,12 @@ typedef struct Work {
     bool paint_strokes;
     int *label_of;
     GArray *tracks;
-    int **track_of;
-    int *rule_of;  // per track
-    bool *is_hair; // per track: a stroke that is a hairline in all frames
-    bool *is_limb; // per track: a stroke that is thick in one of them
-    int *depth_of; // per track: see fl_nesting()
-    int *twin_of;  // per track: the first track whose paints change as its own do
 } Work;
+
+static FlTrack *track_at(const Work *w, int track)
+{
+    return &g_array_index(w->tracks, FlTrack, track);
+}
 
 static bool is_near(const uint8_t a[3], const uint8_t b[3])
 {
@@ -134,7 +133,7 @@ static void match_rules(Work *w)
                 .rgb = s->rgb,
             };
             const int rule = fl_rules_match(w->options->rules, w->options->n_rules, &subject);
-            int *known = &w->rule_of[w->track_of[t][i]];
+            int *known = &track_at(w, s->nth)->rule;
             if (rule >= 0 && (*known < 0 || rule < *known))
                 *known = rule;
         }
@@ -145,14 +144,12 @@ static void find_hairs_and_limbs(Work *w)
 {
     const FlSurvey *survey = w->survey;
     const double hair = HAIRLINE * MAX(survey->page.width, survey->page.height);
-    for (guint k = 0; k < w->tracks->len; k++)
-        w->is_hair[k] = true;
     for (int t = 0; t < survey->n_frames; t++)
         for (guint i = 0; i < survey->frame[t].parts->len; i++) {
             const FlSurveyPart *s = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
-            const int track = w->track_of[t][i];
-            w->is_hair[track] &= s->width > 0 && (double)s->width < hair;
-            w->is_limb[track] |= s->thick;
+            FlTrack *track = track_at(w, s->nth);
+            track->is_hair &= s->width > 0 && (double)s->width < hair;
+            track->is_limb |= s->thick;
         }
 }
 
@@ -160,10 +157,11 @@ static void find_hairs_and_limbs(Work *w)
  * Returns: true if a part is a line that is drawn over the paint. Thick strokes are limbs, and
  * painted; hairlines never, as no pixel is theirs for paint to be in.
  */
-static bool is_apart(const Work *w, const FlSurveyPart *s, int track)
+static bool is_apart(const Work *w, const FlSurveyPart *s)
 {
-    const bool thick = w->is_limb[track] && w->options->strokes != FL_STROKES_KEEP;
-    return s->stroke && ((!w->paint_strokes && !thick) || w->is_hair[track]);
+    const FlTrack *track = track_at(w, s->nth);
+    const bool thick = track->is_limb && w->options->strokes != FL_STROKES_KEEP;
+    return s->stroke && ((!w->paint_strokes && !thick) || track->is_hair);
 }
 
 /** In how many frames both tracks are; -1: in one of them their paints differ. */
@@ -185,11 +183,9 @@ static int common_frames(const FlTrack *a, const FlTrack *b)
  * Returns: true if a track belongs to another one, whose paint varies: theirs change together; or
  * its own does not change, as it is short, and the other's jitters.
  */
-static bool is_twin(const Work *w, int j, int k)
+static bool is_twin(const Work *w, const FlTrack *other, const FlTrack *track)
 {
-    const FlTrack *other = &g_array_index(w->tracks, FlTrack, j);
-    const FlTrack *track = &g_array_index(w->tracks, FlTrack, k);
-    if (is_apart(w, &other->last, j) != is_apart(w, &track->last, k) ||
+    if (is_apart(w, &other->last) != is_apart(w, &track->last) ||
         w->label_of[other->last.labels] != w->label_of[track->last.labels])
         return false;
     const int common = common_frames(other, track);
@@ -203,31 +199,30 @@ static void find_twins(Work *w)
     g_autofree int *varying = g_new(int, n + 1);
     int n_varying = 0;
     for (int k = 0; k < n; k++)
-        if (g_array_index(w->tracks, FlTrack, k).varies)
+        if (track_at(w, k)->varies)
             varying[n_varying++] = k;
     for (int k = 0; k < n; k++) {
-        const FlTrack *track = &g_array_index(w->tracks, FlTrack, k);
-        w->twin_of[k] = k;
-        for (int v = 0; v < n_varying && w->twin_of[k] == k; v++) {
+        FlTrack *track = track_at(w, k);
+        track->twin = k;
+        for (int v = 0; v < n_varying && track->twin == k; v++) {
             const int j = varying[v];
-            if ((!track->varies || (j < k && w->twin_of[j] == j)) && is_twin(w, j, k))
-                w->twin_of[k] = j;
+            const FlTrack *other = track_at(w, j);
+            if ((!track->varies || (j < k && other->twin == j)) && is_twin(w, other, track))
+                track->twin = j;
         }
     }
     for (int k = 0; k < n; k++) // a twin of one that comes later, which has its own
-        w->twin_of[k] = w->twin_of[w->twin_of[k]];
+        track_at(w, k)->twin = track_at(w, track_at(w, k)->twin)->twin;
 }
 
 /** The key of a part's region; parts of equal keys are one region. */
-static char *key_of(const Work *w, const FlSurveyPart *s, int track)
+static char *key_of(const Work *w, const FlSurveyPart *s)
 {
-    const FlTrack *tr = &g_array_index(w->tracks, FlTrack, track);
+    const FlTrack *track = track_at(w, s->nth);
     const int label = w->label_of[s->labels];
-    const char *apart = is_apart(w, s, track)                 ? "s"
-                        : s->blend_mode != FL_BLEND_MODE_OVER ? "m"
-                                                              : "";
-    if (w->rule_of[track] >= 0) // a rule's name makes the region; other rules of that name join
-        return g_strdup_printf("rule %s", w->options->rules[w->rule_of[track]].name);
+    const char *apart = is_apart(w, s) ? "s" : s->blend_mode != FL_BLEND_MODE_OVER ? "m" : "";
+    if (track->rule >= 0) // a rule's name makes the region; other rules of that name join
+        return g_strdup_printf("rule %s", w->options->rules[track->rule].name);
     switch (w->options->key) {
     case FL_KEY_FILL:
         return g_strdup_printf("fill %s%d", apart, s->paint);
@@ -242,15 +237,15 @@ static char *key_of(const Work *w, const FlSurveyPart *s, int track)
     default:
         break;
     }
-    if (tr->varies || w->twin_of[track] != track)
-        return g_strdup_printf("track %d", w->twin_of[track]);
+    if (track->varies || track->twin != s->nth)
+        return g_strdup_printf("track %d", track->twin);
     const int place = s->kind == FL_PAINT_MIXED || s->kind == FL_PAINT_IMAGE ? s->tree : 0;
-    return g_strdup_printf("%s%d/%d/%d/%d", apart, label, s->paint, place, w->depth_of[track]);
+    return g_strdup_printf("%s%d/%d/%d/%d", apart, label, s->paint, place, track->depth);
 }
 
 /** Adds a part to its group. */
-static void add_up(const Work *w, const FlSurveyPart *s, int track, FlRegionIdentity *group,
-                   Sum *sum, GHashTable *areas)
+static void add_up(const Work *w, const FlSurveyPart *s, FlRegionIdentity *group, Sum *sum,
+                   GHashTable *areas)
 {
     const int64_t key = (int64_t)s->region << 32 | s->paint;
     double *area = g_hash_table_lookup(areas, &key);
@@ -271,7 +266,7 @@ static void add_up(const Work *w, const FlSurveyPart *s, int track, FlRegionIden
     sum->covered += s->covers * s->area_px;
     sum->alpha = MAX(sum->alpha, s->alpha);
     sum->plain |= s->blend_mode == FL_BLEND_MODE_OVER;
-    group->stroke = group->stroke && is_apart(w, s, track);
+    group->stroke = group->stroke && is_apart(w, s);
 }
 
 /** Numbers the tracks of each region in the order in which they appear. */
@@ -283,7 +278,7 @@ static void number_tracks(const Work *w, guint n_regions)
     for (int t = 0; t < w->survey->n_frames; t++)
         for (guint i = 0; i < w->survey->frame[t].parts->len; i++) {
             FlSurveyPart *s = &g_array_index(w->survey->frame[t].parts, FlSurveyPart, i);
-            int *number = &nth[w->track_of[t][i]];
+            int *number = &nth[s->nth];
             if (s->region < 0)
                 continue;
             if (*number < 0)
@@ -302,13 +297,13 @@ static GArray *gather(Work *w)
     for (int t = 0; t < w->survey->n_frames; t++)
         for (guint i = 0; i < w->survey->frame[t].parts->len; i++) {
             FlSurveyPart *s = &g_array_index(w->survey->frame[t].parts, FlSurveyPart, i);
-            const int track = w->track_of[t][i];
-            if (s->stroke && w->options->strokes == FL_STROKES_DROP && w->rule_of[track] < 0)
+            const int rule = track_at(w, s->nth)->rule;
+            if (s->stroke && w->options->strokes == FL_STROKES_DROP && rule < 0)
                 continue;
-            g_autofree char *key = key_of(w, s, track);
+            g_autofree char *key = key_of(w, s);
             gpointer number = NULL;
             if (!g_hash_table_lookup_extended(numbers, key, NULL, &number)) {
-                const FlRegionIdentity group = {.rule = w->rule_of[track], .stroke = true};
+                const FlRegionIdentity group = {.rule = rule, .stroke = true};
                 const Sum sum = {0};
                 number = GINT_TO_POINTER(groups->len);
                 g_hash_table_insert(numbers, g_steal_pointer(&key), number);
@@ -316,7 +311,7 @@ static GArray *gather(Work *w)
                 g_array_append_val(sums, sum);
             }
             s->region = GPOINTER_TO_INT(number);
-            add_up(w, s, track, &g_array_index(groups, FlRegionIdentity, s->region),
+            add_up(w, s, &g_array_index(groups, FlRegionIdentity, s->region),
                    &g_array_index(sums, Sum, s->region), areas);
         }
     for (guint r = 0; r < groups->len; r++) {
@@ -334,28 +329,14 @@ GArray *fl_region_identities_find(FlSurvey *survey, const FlDrawingOptions *opti
     w.paint_strokes = options->strokes == FL_STROKES_PAINT ||
                       (options->strokes <= FL_STROKES_AUTO && is_line_art(survey));
     w.label_of = fl_clean_labels(survey);
-    w.tracks = fl_leaf_tracks_find(survey, w.label_of, &w.track_of);
+    w.tracks = fl_leaf_tracks_find(survey, w.label_of);
     join_near_paints(&w);
-    w.depth_of = fl_nesting(survey, w.track_of, w.label_of, (int)w.tracks->len);
-    w.rule_of = g_new(int, w.tracks->len + 1);
-    w.twin_of = g_new(int, w.tracks->len + 1);
-    w.is_hair = g_new(bool, w.tracks->len + 1);
-    w.is_limb = g_new0(bool, w.tracks->len + 1);
+    fl_find_nesting(survey, w.label_of, w.tracks);
     find_hairs_and_limbs(&w);
-    for (guint k = 0; k < w.tracks->len; k++)
-        w.rule_of[k] = -1;
     match_rules(&w);
     find_twins(&w);
     GArray *groups = gather(&w);
     number_tracks(&w, groups->len);
-    for (int t = 0; t < survey->n_frames; t++)
-        g_free(w.track_of[t]);
-    g_free(w.track_of);
-    g_free(w.depth_of);
-    g_free(w.rule_of);
-    g_free(w.is_hair);
-    g_free(w.is_limb);
-    g_free(w.twin_of);
     g_array_unref(w.tracks);
     g_free(w.label_of);
     return groups;

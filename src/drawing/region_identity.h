@@ -31,6 +31,11 @@ int *fl_clean_labels(FlSurvey *survey);
 typedef struct FlTrack {
     FlSurveyPart last; // in the last frame that has it
     int last_frame;
+    int rule;       // the first that it matches in any frame; -1: none
+    int depth;      // see fl_find_nesting()
+    int twin;       // the first track whose paints change as its own do
+    bool is_hair;   // a stroke that is a hairline in all frames
+    bool is_limb;   // a stroke that is thick in one of them
     bool varies;    // its paint changed
     uint8_t rgb[3]; // of the first frame that has it
     float drift;    // largest CIE76 distance of its paint from this colour
@@ -38,21 +43,19 @@ typedef struct FlTrack {
 } FlTrack;
 
 /**
- * Finds the tracks. label_of maps FlSurveyPart.labels to clean labels.
+ * Finds the tracks and sets FlSurveyPart.nth to that of each part. label_of maps
+ * FlSurveyPart.labels to clean labels.
  *
- * Returns: an array of FlTrack; track_of[t][i] (to be freed, as its rows) is the track of part i of
- * frame t. Two leaves with the same label and paint may swap tracks; that does not matter.
+ * Returns: an array of FlTrack. Two leaves with the same label and paint may swap tracks; that does
+ * not matter.
  */
-GArray *fl_leaf_tracks_find(const FlSurvey *survey, const int *label_of, int ***track_of);
+GArray *fl_leaf_tracks_find(const FlSurvey *survey, const int *label_of);
 
 /**
- * The nesting depth of each track in others of its paint: 0: not nested,
- * nested only in some frames, or small. As one region such leaves would hide each other in the
- * whole-shape mask.
- *
- * Returns: n_tracks levels, to be freed.
+ * Finds the nesting depth of each track in others of its paint: 0: not nested, nested only in some
+ * frames, or small. As one region such leaves would hide each other in the whole-shape mask.
  */
-int *fl_nesting(const FlSurvey *survey, int *const *track_of, const int *label_of, int n_tracks);
+void fl_find_nesting(const FlSurvey *survey, const int *label_of, GArray *tracks);
 
 /**
  * A name for every group, unique, of [a-z0-9-]: that of its rule, else the innermost label and the

@@ -36,7 +36,7 @@ typedef struct FlSurveyPart {
     float covers;  // share of it that lies over other paint, page-filling ones not counted
     int unit;      // 1 + index of the unit it is, or is a leaf of, if that is to be drawn as one
     int region;    // set later; -1: not drawn
-    int nth;       // set later: the first, second, … leaf that the region has in the film
+    int nth; // set later: its track, then the first, second, … leaf that the region has in the film
 } FlSurveyPart;
 
 /** A frame as it was read. */
