@@ -215,7 +215,8 @@ static void contrast_stays_where_use_is_equal_and_goes_where_it_is_not(void)
     g_assert_cmpfloat(off, <, .7 * strict);
 }
 
-/* The first frame of a draft, and no other frame, takes the nearest matches on its finest level. */
+/* No patch of a draft is turned, and its first frame takes the nearest matches on the finest level.
+ */
 static void a_draft_begins_with_less_search_and_the_same_contrast(void)
 {
     FlFrameStats stats[2][2];
@@ -223,15 +224,16 @@ static void a_draft_begins_with_less_search_and_the_same_contrast(void)
     for (int draft = 0; draft < 2; draft++) {
         g_auto(Film) film;
         film_init(&film, still_of_blotches(), "lazyfluids", "1");
-        film.params->half_size = draft;
+        film.params->half_size = draft, film.params->rotate = true;
         for (int frame = 0; frame < 2; frame++)
             g_assert_true(fl_lazy_frame(film.lazy, &film.guides, film.rgb, film.alpha,
                                         &stats[draft][frame], NULL, NULL));
         spread[draft] = spread_of(film.rgb, film.guides.mask, PIXELS);
     }
-    g_assert_cmpint(stats[1][0].level[0].counts.tried, <, stats[0][0].level[0].counts.tried / 2);
-    g_assert_cmpint(stats[1][0].level[1].counts.tried, ==, stats[0][0].level[1].counts.tried);
-    g_assert_cmpint(stats[1][1].level[0].counts.tried, >, stats[0][1].level[0].counts.tried / 2);
+    const uint64_t first = stats[1][0].level[0].counts.tried;
+    const uint64_t second = stats[1][1].level[0].counts.tried;
+    g_assert_cmpuint(first, <, second / 2);
+    g_assert_cmpuint(second, <, stats[0][1].level[0].counts.tried * 4 / 5);
     g_assert_cmpfloat(spread[1], >, .9 * spread[0]);
 }
 

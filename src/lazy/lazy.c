@@ -335,8 +335,9 @@ static bool start_picture(FlLazy *lazy, int l, GError **error)
     return true;
 }
 
-/* Border, then interior; on a level without separate ones the first is all. The finest level of a
- * draft's first frame takes nearest neighbours: the coarser ones have used the style evenly. */
+/* Border, then interior; on a level without separate ones the first is all. Drafts do not turn
+ * patches, and the finest level of their first frame takes nearest neighbours: the coarser ones
+ * have used the style evenly. */
 static bool retrieve(FlLazy *lazy, int l, uint64_t key, FlLevelStats *stats, GError **error)
 {
     Level *level = &lazy->level[l];
@@ -353,7 +354,7 @@ static bool retrieve(FlLazy *lazy, int l, uint64_t key, FlLevelStats *stats, GEr
                                 .targets = level->segments.place[s],
                                 .n_sources = source->segments.n[s],
                                 .n_targets = level->segments.n[s],
-                                .turns = params->rotate,
+                                .turns = params->rotate && !params->half_size,
                                 .uniform = freely                   ? FL_UNIFORM_OFF
                                            : params->uniform_blocks ? FL_UNIFORM_AUTO
                                                                     : FL_UNIFORM_PATCH,
