@@ -423,6 +423,11 @@ static void gaps_of_librsvg_are_filled(void)
     assert_value("<g xml:lang='den'><style>:lang(de){fill:#123456}</style><path id='a'/></g>",
                  "fill", "");
     assert_value("<marker id='a' refX='center'/>", "refX", "");
+    assert_value("<path id='a' systemLanguage='xx'/>", "display", "none");
+    assert_value("<switch><path id='a' systemLanguage='xx'/></switch>", "display", "");
+    assert_value("<linearGradient id='g' gradientUnits='userSpaceOnUse'/>"
+                 "<rect id='a' width='4' height='2' fill='url(#g)' transform='rotate(9)'/>",
+                 "fill", "url(#g)");
     assert_value("<path id='a' fill='rgb(1, 2, 3) /* {\"name\":\"Ink\"} */'/>", "fill",
                  "rgb(1, 2, 3)");
     assert_value("<filter><feOffset id='a' in='SourceAlpha'/><feColorMatrix/></filter>", "in",
@@ -434,6 +439,10 @@ static void gaps_of_librsvg_are_filled(void)
                     "<linearGradient x2='0'><stop id='s' offset='.123'/><stop/></linearGradient>"
                     "<filter id='t'><feGaussianBlur stdDeviation='3'/></filter>"
                     "<g transform='rotate(45)'><path filter='url(#t)' transform='scale(2)'/></g>"
+                    "<linearGradient id='o' x2='50%'/><pattern id='q' width='.5' height='1' "
+                    "patternContentUnits='objectBoundingBox'><path/></pattern>"
+                    "<g fill='url(#o)'><rect x='3' width='8' height='2' transform='rotate(9)' "
+                    "stroke='url(#q)'/><rect width='4' height='2'/></g>"
                     "<use href='#s'/><symbol id='w' width='7' height='5'/><use href='#w'/>"
                     "<image href='data:image/svg+xml,%3csvg xmlns=\"http://www.w3.org/2000/svg\" "
                     "width=\"2\" height=\"1\"/%3e'/>");
@@ -442,6 +451,12 @@ static void gaps_of_librsvg_are_filled(void)
     g_assert_nonnull(strstr(text, "<feMerge dx=\"1\" result=\"r\""));
     g_assert_nonnull(strstr(text, "<feMergeNode in=\"fl-before-0\"/>"));
     g_assert_nonnull(strstr(text, "stdDeviation=\"0 4.24264069\""));
+    g_assert_nonnull(strstr(text, "href=\"#o\" gradientUnits=\"userSpaceOnUse\" "
+                                  "gradientTransform=\"matrix(8, 0, 0, 2, 3, 0)\" x1=\"0\""));
+    g_assert_nonnull(strstr(text, "x2=\"0.5\""));
+    g_assert_nonnull(strstr(text, "x=\"3\" y=\"0\" width=\"4\" height=\"2\" patternContentUnits="
+                                  "\"userSpaceOnUse\"><g transform=\"matrix(8, 0, 0, 2, 0, 0)\">"));
+    g_assert_nonnull(strstr(text, "\"fill:url(#fl-turned-1);stroke:url(#fl-turned-2)\""));
     g_assert_null(strstr(text, "<stop id"));
     g_assert_nonnull(strstr(text, "width=\"7\" height=\"5\" data-fl-id=\"w\" overflow"));
     g_assert_nonnull(strstr(text, "svg+xml;base64,"));

@@ -114,6 +114,14 @@ char *fl_inherited_property(const xmlNode *node, const char *name)
     return value;
 }
 
+xmlNode *fl_referred_by(const char *value, const char *const *kinds, GHashTable *ids)
+{
+    g_autofree char *reference = value ? fl_css_string_or_url(value) : NULL;
+    xmlNode *found =
+        reference && *reference == '#' ? g_hash_table_lookup(ids, reference + 1) : NULL;
+    return found && fl_is_one_of(found, kinds) ? found : NULL;
+}
+
 bool fl_declare(xmlNode *node, const char *declarations)
 {
     g_autoptr(xmlChar) style = fl_attribute(node, "style");

@@ -89,6 +89,9 @@ char *fl_property(const xmlNode *node, const char *name);
 /** Likewise, of the innermost element around that says it, if the element itself does not. */
 char *fl_inherited_property(const xmlNode *node, const char *name);
 
+/** The element of one of those kinds that a value, url(#id), refers to; NULL without one. */
+xmlNode *fl_referred_by(const char *value, const char *const *kinds, GHashTable *ids);
+
 /**
  * Adds declarations, such as "fill:none !important", to those of `style=""`. Returns: false if
  * `style=""` already ended with these declarations.

@@ -5,8 +5,6 @@
 #include "svg/document.h"
 #include "svg/geometry.h"
 #include "svg/normalise.h"
-#include "svg/transform.h"
-#include <math.h>
 #include <string.h>
 
 #define MOST_CLIPS 16 // of clip paths that clip each other
@@ -131,74 +129,16 @@ static void mend_inputs(xmlNode *filter)
         fl_set_attribute(add_input(filter, "feFlood", FL_NO_BACKGROUND), "flood-opacity", "0");
 }
 
-/* ---- blurs of turned shapes ------------------------------------------------------------------ */
-
-/** The element of that kind that a property of a node refers to; NULL without one. */
-static xmlNode *referred_by(const xmlNode *node, const char *property, const char *kind,
-                            GHashTable *ids)
-{
-    g_autofree char *value = fl_property(node, property);
-    g_autofree char *reference = value ? fl_css_string_or_url(value) : NULL;
-    xmlNode *found =
-        reference && *reference == '#' ? g_hash_table_lookup(ids, reference + 1) : NULL;
-    return found && fl_is(found, kind) ? found : NULL;
-}
-
-/** Gives a blur the two deviations that the map m, as librsvg applies it, makes equal. */
-static void turn_blur(xmlNode *step, const FlAffine *m)
-{
-    g_autoptr(xmlChar) text = fl_attribute(step, "stdDeviation");
-    const char *s = text ? (const char *)text : fl_is(step, "feDropShadow") ? "2" : "0";
-    double across, down;
-    if (!fl_number_read(&s, &across))
-        return;
-    s += strspn(s, FL_CSS_SPACE ",");
-    if (fl_number_read(&s, &down) && down != across)
-        return; // librsvg has no blur across the axes
-    const double determinant = m->xx * m->yy - m->xy * m->yx;
-    const double px = across * sqrt(fabs(determinant));
-    for (int k = 0; k < 4; k++) { // the sign of a deviation does not count after the map
-        const double x = k & 1 ? -1 : 1, y = k & 2 ? -1 : 1;
-        const double a = (m->yy * x - m->xy * y) / determinant;
-        const double b = (m->xx * y - m->yx * x) / determinant;
-        if (a > -1e-9 && b > -1e-9)
-            fl_set_numbers(step, "stdDeviation", (double[]){px * fmax(a, 0), px * fmax(b, 0)}, 2);
-    }
-}
-
 /** Makes a filter that only blends with the background the blend mode of its element. */
 static void mend_blend(const Mend *m, xmlNode *node)
 {
-    const xmlNode *filter = referred_by(node, "filter", "filter", m->ids);
+    static const char *const filters[] = {"filter", NULL};
+    g_autofree char *value = fl_property(node, "filter");
+    const xmlNode *filter = fl_referred_by(value, filters, m->ids);
     g_autoptr(xmlChar) mode = filter ? blend_mode(filter) : NULL;
     g_autofree char *style = mode ? g_strdup_printf("filter:none;mix-blend-mode:%s", mode) : NULL;
     if (style)
         fl_declare(node, style);
-}
-
-/** librsvg turns the deviations of a blur across and down like a way: at 45 degrees it blurs in one
- * direction only. What is turned gets a filter of its own, whose blurs come out round. */
-static void mend_blur(Mend *m, xmlNode *node)
-{
-    xmlNode *filter = referred_by(node, "filter", "filter", m->ids);
-    FlAffine map = FL_AFFINE_NONE;
-    for (const xmlNode *at = node; filter && at && at->type == XML_ELEMENT_NODE; at = at->parent) {
-        const FlAffine own = fl_affine_of(at);
-        map = fl_affine_multiply(&own, &map);
-    }
-    const bool upright = (map.xy == 0 && map.yx == 0) || (map.xx == 0 && map.yy == 0);
-    g_autofree char *units = filter ? fl_property(filter, "primitiveUnits") : NULL;
-    if (!filter || upright || map.xx * map.yy == map.xy * map.yx ||
-        (units && strcmp(units, "objectBoundingBox") == 0))
-        return;
-    g_autofree char *id = g_strdup_printf("fl-turned-%d", m->n_made++);
-    g_autofree char *declaration = g_strdup_printf("filter:url(#%s)", id);
-    xmlNode *turned = xmlAddNextSibling(filter, xmlDocCopyNode(filter, filter->doc, 1));
-    fl_set_attribute(turned, "id", id);
-    fl_declare(node, declaration);
-    for (xmlNode *step = turned->children; step; step = step->next)
-        if (fl_is(step, "feGaussianBlur") || fl_is(step, "feDropShadow"))
-            turn_blur(step, &map);
 }
 
 /* ---- numbers of filters ---------------------------------------------------------------------- */
@@ -295,13 +235,14 @@ static xmlNode *wrap(xmlNode *node, const xmlNode *clip)
 /** librsvg leaves the clip of a clip path out: a group around what is clipped has it instead. */
 static void mend_clip(xmlNode *node, GHashTable *ids)
 {
-    const xmlNode *clip = referred_by(node, "clip-path", "clipPath", ids);
-    for (int depth = 0; clip && depth < MOST_CLIPS; depth++) {
-        const xmlNode *outer = referred_by(clip, "clip-path", "clipPath", ids);
-        if (!outer)
+    static const char *const clips[] = {"clipPath", NULL};
+    for (int depth = 0; depth < MOST_CLIPS; depth++) {
+        g_autofree char *value = fl_property(node, "clip-path");
+        const xmlNode *clip = fl_referred_by(value, clips, ids);
+        g_autofree char *outer = clip ? fl_property(clip, "clip-path") : NULL;
+        if (!fl_referred_by(outer, clips, ids))
             return;
         node = wrap(node, clip);
-        clip = outer;
     }
 }
 
@@ -400,8 +341,11 @@ static void mend_words(xmlNode *node)
         fl_declare(node, "opacity:1;filter:none;mask:none;clip-path:none;mix-blend-mode:normal");
         fl_set_attribute(node, "transform", NULL);
     }
-    if (fl_is(node->parent, "switch") && fl_is_eligible(node))
+    const bool eligible = fl_is_eligible(node);
+    if (fl_is(node->parent, "switch") && eligible)
         fl_set_attribute(node, "systemLanguage", NULL);
+    else if (!eligible && !fl_is(node->parent, "switch"))
+        fl_declare(node, "display:none");
 }
 
 /* ---- the document ---------------------------------------------------------------------------- */
@@ -431,7 +375,6 @@ static void mend(Mend *m, xmlNode *node)
         mend_words(child);
         mend(m, child);
         mend_blend(m, child);
-        mend_blur(m, child);
         if (!fl_is(child, "clipPath") && !fl_is(node, "clipPath"))
             mend_clip(child, m->ids);
     }
@@ -441,5 +384,6 @@ void fl_document_mend(xmlDoc *doc)
 {
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
     Mend m = {.ids = ids};
+    fl_document_mend_turned(doc, ids);
     mend(&m, xmlDocGetRootElement(doc));
 }

@@ -1,0 +1,195 @@
+#include "svg/css_shapes.h"
+#include "svg/passes.h"
+#include <math.h>
+#include <string.h>
+
+#define MOST_REFERENCES 16 // from gradient to gradient
+
+typedef struct Turned {
+    GHashTable *ids; // id -> xmlNode, the first of that id
+    FlCssUnits units;
+    int n_made; // names
+} Turned;
+
+/* ---- blurs ----------------------------------------------------------------------------------- */
+
+/** Gives a blur the two deviations that the map m, as librsvg applies it, makes equal. */
+static void turn_blur(xmlNode *step, const FlAffine *m)
+{
+    g_autoptr(xmlChar) text = fl_attribute(step, "stdDeviation");
+    const char *s = text ? (const char *)text : fl_is(step, "feDropShadow") ? "2" : "0";
+    double across, down;
+    if (!fl_number_read(&s, &across))
+        return;
+    s += strspn(s, FL_CSS_SPACE ",");
+    if (fl_number_read(&s, &down) && down != across)
+        return; // librsvg has no blur across the axes
+    const double determinant = m->xx * m->yy - m->xy * m->yx;
+    const double px = across * sqrt(fabs(determinant));
+    for (int k = 0; k < 4; k++) { // the sign of a deviation does not count after the map
+        const double x = k & 1 ? -1 : 1, y = k & 2 ? -1 : 1;
+        const double a = (m->yy * x - m->xy * y) / determinant;
+        const double b = (m->xx * y - m->yx * x) / determinant;
+        if (a > -1e-9 && b > -1e-9)
+            fl_set_numbers(step, "stdDeviation", (double[]){px * fmax(a, 0), px * fmax(b, 0)}, 2);
+    }
+}
+
+/** librsvg turns the deviations of a blur across and down like a way: at 45 degrees it blurs in one
+ * direction only. What is turned gets a filter of its own, whose blurs come out round. */
+static void mend_blur(Turned *t, xmlNode *node, const FlAffine *map)
+{
+    static const char *const filters[] = {"filter", NULL};
+    g_autofree char *value = fl_property(node, "filter");
+    xmlNode *filter = fl_referred_by(value, filters, t->ids);
+    g_autofree char *units = filter ? fl_property(filter, "primitiveUnits") : NULL;
+    if (!filter || (units && strcmp(units, "objectBoundingBox") == 0))
+        return;
+    g_autofree char *id = g_strdup_printf("fl-turned-%d", t->n_made++);
+    g_autofree char *declaration = g_strdup_printf("filter:url(#%s)", id);
+    xmlNode *turned = xmlAddNextSibling(filter, xmlDocCopyNode(filter, filter->doc, 1));
+    fl_set_attribute(turned, "id", id);
+    fl_declare(node, declaration);
+    FL_EACH_ELEMENT (step, turned)
+        if (fl_is(step, "feGaussianBlur") || fl_is(step, "feDropShadow"))
+            turn_blur(step, map);
+}
+
+/* ---- paints in units of the box ---------------------------------------------------------------
+ */
+
+/** The first in a chain of paint servers that has an attribute; without `name`, that has content.
+ */
+static const xmlNode *server_with(const Turned *t, const xmlNode *server, const char *name)
+{
+    for (int k = 0; server && k < MOST_REFERENCES; k++) {
+        g_autofree char *href = fl_href(server);
+        if (name ? xmlHasProp((xmlNode *)server, (const xmlChar *)name) != NULL
+                 : xmlFirstElementChild((xmlNode *)server) != NULL)
+            return server;
+        server = href && *href == '#' ? g_hash_table_lookup(t->ids, href + 1) : NULL;
+    }
+    return NULL;
+}
+
+static xmlChar *server_attribute(const Turned *t, const xmlNode *server, const char *name)
+{
+    const xmlNode *with = server_with(t, server, name);
+    return with ? fl_attribute(with, name) : NULL;
+}
+
+/** Returns: true if an attribute says, or is missing and stands for, objectBoundingBox. */
+static bool is_in_box(const Turned *t, const xmlNode *server, const char *name, bool missing)
+{
+    g_autoptr(xmlChar) units = server_attribute(t, server, name);
+    return units ? strcmp((char *)units, "objectBoundingBox") == 0 : missing;
+}
+
+/** Sets an attribute that is a share of a side to a number: from + side * share. */
+static void set_share(const Turned *t, xmlNode *own, const xmlNode *server, const char *name,
+                      const char *missing, double from, double side)
+{
+    const FlCssUnits none = {0};
+    g_autoptr(xmlChar) text = server_attribute(t, server, name);
+    double share;
+    if (!(text || missing) || !fl_css_number(text ? (char *)text : missing, &none, 1, &share))
+        return;
+    share = from + side * share;
+    fl_set_numbers(own, name, &share, 1);
+}
+
+/** Places a gradient by its transform. */
+static void place_gradient(const Turned *t, xmlNode *own, const xmlNode *server, FlCssBox box)
+{
+    static const char *const shares[][2] = {{"x1", "0"},  {"y1", "0"},  {"x2", "1"}, {"y2", "0"},
+                                            {"cx", ".5"}, {"cy", ".5"}, {"r", ".5"}, {"fx", NULL},
+                                            {"fy", NULL}, {"fr", NULL}};
+    const FlAffine place = {box.width, 0, 0, box.height, box.x, box.y};
+    g_autoptr(xmlChar) transform = server_attribute(t, server, "gradientTransform");
+    FlAffine turn = FL_AFFINE_NONE;
+    if (transform)
+        fl_affine_parse((const char *)transform, &turn);
+    turn = fl_affine_multiply(&place, &turn);
+    g_autofree char *text = fl_affine_text(&turn);
+    fl_set_attribute(own, "gradientUnits", "userSpaceOnUse");
+    fl_set_attribute(own, "gradientTransform", text);
+    for (size_t i = 0; i < G_N_ELEMENTS(shares); i++)
+        set_share(t, own, server, shares[i][0], shares[i][1], 0, 1);
+}
+
+/** Places the tiles of a pattern, and scales their content. */
+static void place_pattern(const Turned *t, xmlNode *own, const xmlNode *server, FlCssBox box)
+{
+    const xmlNode *content = server_with(t, server, NULL);
+    if (is_in_box(t, server, "patternUnits", true)) {
+        fl_set_attribute(own, "patternUnits", "userSpaceOnUse");
+        set_share(t, own, server, "x", "0", box.x, box.width);
+        set_share(t, own, server, "y", "0", box.y, box.height);
+        set_share(t, own, server, "width", "0", 0, box.width);
+        set_share(t, own, server, "height", "0", 0, box.height);
+    }
+    if (!content || server_with(t, server, "viewBox") ||
+        !is_in_box(t, server, "patternContentUnits", false))
+        return;
+    const FlAffine scale = {box.width, 0, 0, box.height, 0, 0};
+    g_autofree char *text = fl_affine_text(&scale);
+    xmlNode *group = xmlNewChild(own, own->ns, (const xmlChar *)"g", NULL);
+    xmlAddChildList(group, xmlDocCopyNodeList(own->doc, content->children));
+    fl_set_attribute(group, "transform", text);
+    fl_set_attribute(own, "patternContentUnits", "userSpaceOnUse");
+}
+
+/** librsvg takes the box of a turned shape for that of its picture: the shape gets a paint of its
+ * own in user units. */
+static void mend_paint(Turned *t, xmlNode *node, const char *property)
+{
+    static const char *const servers[] = {"linearGradient", "radialGradient", "pattern", NULL};
+    g_autofree char *value = fl_inherited_property(node, property);
+    xmlNode *server = fl_referred_by(value, servers, t->ids);
+    const bool pattern = server && fl_is(server, "pattern");
+    const bool in_box = server && (pattern ? is_in_box(t, server, "patternUnits", true) ||
+                                                 is_in_box(t, server, "patternContentUnits", false)
+                                           : is_in_box(t, server, "gradientUnits", true));
+    g_autoptr(xmlChar) id = in_box ? fl_attribute(server, "id") : NULL;
+    FlCssBox box;
+    if (!id || !fl_css_fill_box(node, &t->units, &box) || !(box.width > 0 && box.height > 0))
+        return;
+    g_autofree char *name = g_strdup_printf("fl-turned-%d", t->n_made++);
+    g_autofree char *href = g_strconcat("#", (char *)id, NULL);
+    g_autofree char *declaration = g_strdup_printf("%s:url(#%s)", property, name);
+    xmlNode *own = xmlNewDocNode(node->doc, server->ns, server->name, NULL);
+    fl_set_attribute(own, "id", name);
+    fl_set_attribute(own, "href", href);
+    (pattern ? place_pattern : place_gradient)(t, own, server, box);
+    xmlAddNextSibling(server, own);
+    fl_declare(node, declaration);
+}
+
+/* ---- the document ---------------------------------------------------------------------------- */
+
+static void visit(Turned *t, xmlNode *node, const FlAffine *around)
+{
+    static const char *const shapes[] = {"path", "rect",     "circle",  "ellipse",
+                                         "line", "polyline", "polygon", NULL};
+    const FlAffine own = fl_affine_of(node), map = fl_affine_multiply(around, &own);
+    const bool upright = (map.xy == 0 && map.yx == 0) || (map.xx == 0 && map.yy == 0);
+    if (!upright && map.xx * map.yy != map.xy * map.yx) {
+        mend_blur(t, node, &map);
+        if (fl_is_one_of(node, shapes)) {
+            mend_paint(t, node, "fill");
+            mend_paint(t, node, "stroke");
+        }
+    }
+    FL_EACH_ELEMENT (child, node)
+        visit(t, child, &map);
+}
+
+void fl_document_mend_turned(xmlDoc *doc, GHashTable *ids)
+{
+    const FlAffine none = FL_AFFINE_NONE;
+    xmlNode *root = xmlDocGetRootElement(doc);
+    double box[4] = {0, 0, 300, 150};
+    fl_view_box(root, box);
+    Turned t = {.ids = ids, .units = {.width = box[2], .height = box[3]}};
+    visit(&t, root, &none);
+}
