@@ -330,7 +330,7 @@ static void a_recipe_error_names_file_and_line(void)
     static const char *const cases[][2] = {
         {SMALL "colour = red\n", ":12: unknown key “colour”: expected one of points"},
         {SMALL "radios = 4\n", "did you mean “radius”?"},
-        {SMALL "[paper]\ncolour = red\n", ":13: colour = red: expected a colour"},
+        {SMALL "[style]\npaper = red\n", ":13: paper = red: expected a colour"},
         {SMALL "[flow]\nconduct = 2\n", ":13: conduct = 2: expected a number from 0 to 1"},
         {SMALL "[flows]\n", ":12: [flows] is not a group of a recipe"},
         {SMALL "[pigment Mud]\n", ":12: [pigment Mud] is not a known pigment"},

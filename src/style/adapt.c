@@ -158,30 +158,6 @@ static bool add_room(FlStyle *style, GError **error)
     return true;
 }
 
-/* Copies the fields that do not depend on the size and number of the frames. */
-static FlStyle *new_like(const FlStyle *style)
-{
-    FlStyle *out = g_new0(FlStyle, 1);
-    *out = (FlStyle){.name = g_strdup(style->name),
-                     .path = g_strdup(style->path),
-                     .author = g_strdup(style->author),
-                     .licence = g_strdup(style->licence),
-                     .fps = style->fps,
-                     .scale = 1,
-                     .cut_out = style->cut_out,
-                     .medium = style->medium,
-                     .marks = style->marks,
-                     .fluid = style->fluid,
-                     .granulation = style->granulation,
-                     .front = style->front,
-                     .wash = style->wash,
-                     .sheet = style->sheet,
-                     .melt = style->melt,
-                     .smoothness = style->smoothness};
-    memcpy(out->paper, style->paper, sizeof out->paper);
-    return out;
-}
-
 static bool make_planes(FlStyle *out, bool flow, GError **error)
 {
     const size_t pixels = (size_t)out->width * (size_t)out->height * (size_t)out->n_frames;
@@ -192,7 +168,7 @@ static bool make_planes(FlStyle *out, bool flow, GError **error)
 
 FlStyle *fl_style_adapt(const FlStyle *style, const FlStyleUse *use, GError **error)
 {
-    g_autoptr(FlStyle) out = new_like(style);
+    g_autoptr(FlStyle) out = fl_style_like(style);
     out->fps /= (float)use->step;
     if (!find_sizes(style, use, out, error) || !make_planes(out, style->flow, error) ||
         !adapt_frames(style, use, out, error) ||
@@ -220,7 +196,7 @@ static void halve_bytes(const uint8_t *plane, int width, int height, int channel
 FlStyle *fl_style_halve(const FlStyle *style, GError **error)
 {
     const size_t pixels = (size_t)style->width * (size_t)style->height;
-    g_autoptr(FlStyle) out = new_like(style);
+    g_autoptr(FlStyle) out = fl_style_like(style);
     out->width = fl_half_side(style->width), out->height = fl_half_side(style->height);
     out->n_frames = style->n_frames;
     out->border_px = style->border_px / 2;

@@ -71,11 +71,6 @@ static void set_facts(Import *import, const FlRecording *source)
     style->licence = g_strdup(options->licence);
     style->fps = rate > 0 ? (float)CLAMP(rate, 0.01, 1000) : 25;
     style->guessed = rate > 0 ? 0 : FL_GUESS_FPS; // all else is known in the end
-    style->scale = 1;
-    style->granulation = FL_GRANULATION;
-    style->front = (FlFrontStyle)FL_FRONT_DEFAULTS;
-    style->wash = (FlWashStyle)FL_WASH_DEFAULTS;
-    style->sheet = (FlSheetStyle)FL_SHEET_DEFAULTS;
 }
 
 static bool store_frames(FlStyle *style, GPtrArray *pictures, GError **error)
@@ -326,7 +321,7 @@ static void add_warnings(const Import *import)
 
 bool fl_style_import(const FlStyleImport *options, GPtrArray *notes, GError **error)
 {
-    g_autoptr(FlStyle) style = g_new0(FlStyle, 1);
+    g_autoptr(FlStyle) style = fl_style_new();
     Import import = {.options = options, .style = style, .notes = notes};
     if (!fl_headroom_check(error) || !check_options(options, style->paper, error) ||
         !fl_style_may_write(options->folder, options->overwrite, error) ||

@@ -186,18 +186,38 @@ static bool read_flow(FlStyle *style, const char *folder, GError **error)
     return true;
 }
 
+FlStyle *fl_style_new(void)
+{
+    FlStyle *style = g_new(FlStyle, 1);
+    *style = (FlStyle){.fps = 25,
+                       .scale = 1,
+                       .granulation = FL_GRANULATION,
+                       .front = FL_FRONT_DEFAULTS,
+                       .wash = FL_WASH_DEFAULTS,
+                       .sheet = FL_SHEET_DEFAULTS};
+    return style;
+}
+
+FlStyle *fl_style_like(const FlStyle *style)
+{
+    FlStyle *out = g_new(FlStyle, 1);
+    *out = *style;
+    char **const texts[] = {&out->name,    &out->path,    &out->character,           &out->author,
+                            &out->licence, &out->made_by, &out->missing_orientations};
+    for (size_t k = 0; k < G_N_ELEMENTS(texts); k++)
+        *texts[k] = g_strdup(*texts[k]);
+    out->rgb = out->mask = NULL, out->flow = NULL, out->stop = NULL;
+    out->settings = (FlOverrides){0};
+    out->scale = 1;
+    return out;
+}
+
 static FlStyle *new_style(const char *folder)
 {
-    FlStyle *style = g_new0(FlStyle, 1);
+    FlStyle *style = fl_style_new();
     g_autofree char *absolute = g_canonicalize_filename(folder, NULL);
     style->path = g_strdup(folder);
     style->name = g_path_get_basename(absolute);
-    style->fps = 25;
-    style->scale = 1;
-    style->granulation = FL_GRANULATION;
-    style->front = (FlFrontStyle)FL_FRONT_DEFAULTS;
-    style->wash = (FlWashStyle)FL_WASH_DEFAULTS;
-    style->sheet = (FlSheetStyle)FL_SHEET_DEFAULTS;
     style->guessed =
         FL_GUESS_BORDER | FL_GUESS_PAPER | FL_GUESS_MASK | FL_GUESS_FLOW | FL_GUESS_FPS;
     return style;

@@ -52,7 +52,7 @@ static const FlTableKey sheet_keys[] = {
     {"relief", FL_KEY_OF(NUMBER, FlSheetStyle, relief), 0, 4},
 };
 
-static const FlKeyTable style_table = {style_keys, G_N_ELEMENTS(style_keys)};
+const FlKeyTable fl_style_table = {style_keys, G_N_ELEMENTS(style_keys)};
 const FlKeyTable fl_front_table = {front_keys, G_N_ELEMENTS(front_keys)};
 const FlKeyTable fl_wash_table = {wash_keys, G_N_ELEMENTS(wash_keys)};
 const FlKeyTable fl_sheet_table = {sheet_keys, G_N_ELEMENTS(sheet_keys)};
@@ -70,7 +70,7 @@ static bool take_setting(void *settings, const char *name, const char *value, GE
 
 bool fl_manifest_read(FlStyle *style, const char *path, GError **error)
 {
-    FlKeySection sections[] = {{"style", &style_table, style, FL_ERROR_STYLE},
+    FlKeySection sections[] = {{"style", &fl_style_table, style, FL_ERROR_STYLE},
                                {"front", &fl_front_table, &style->front, FL_ERROR_STYLE},
                                {"wash", &fl_wash_table, &style->wash, FL_ERROR_STYLE},
                                {"sheet", &fl_sheet_table, &style->sheet, FL_ERROR_STYLE},
@@ -104,7 +104,7 @@ char *fl_manifest_text(const FlStyle *style)
                            .wash = FL_WASH_DEFAULTS,
                            .sheet = FL_SHEET_DEFAULTS};
     GString *text = g_string_new("[style]\n");
-    fl_key_table_write(&style_table, style, &plain, style->guessed, text);
+    fl_key_table_write(&fl_style_table, style, &plain, style->guessed, text);
     append_section(&fl_front_table, &style->front, &plain.front, "front", text);
     append_section(&fl_wash_table, &style->wash, &plain.wash, "wash", text);
     append_section(&fl_sheet_table, &style->sheet, &plain.sheet, "sheet", text);

@@ -14,8 +14,10 @@ typedef enum FlGuess {
     FL_GUESS_FPS = 1 << 4,
 } FlGuess;
 
-/** The keys of FlFrontStyle, FlWashStyle and FlSheetStyle: recipes have these sections, too. */
-extern const FlKeyTable fl_front_table, fl_wash_table, fl_sheet_table;
+/** The keys of FlStyle, FlFrontStyle, FlWashStyle and FlSheetStyle: recipes have these sections,
+ * too.
+ */
+extern const FlKeyTable fl_style_table, fl_front_table, fl_wash_table, fl_sheet_table;
 
 /**
  * Reads the [style] section of the key file at `path` into the fields it names, and takes what is

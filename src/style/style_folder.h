@@ -93,6 +93,12 @@ typedef struct FlStyle {
 #define FL_STYLE_TILE "transport.png" // a file of styles that move ink: transport/tile.h
 #define FL_GRANULATION 0.07f          // default for styles
 
+/** A style without frames, of which all is as usual. */
+FlStyle *fl_style_new(void);
+
+/** A copy of a style, at scale 1, without its frames and settings of regions. */
+FlStyle *fl_style_like(const FlStyle *style);
+
 /**
  * Reads a folder. Estimates what it lacks from its frames: the paper's colour, the masks, the
  * border. Without flow files the flow is NULL.

@@ -11,25 +11,14 @@ static FlRecipe *defaults(void)
 {
     FlRecipe *recipe = g_new0(FlRecipe, 1);
     *recipe = (FlRecipe){
-        .name = g_strdup("Untitled"),
-        .author = g_strdup("fluidy-svg"),
-        .licence = g_strdup("CC0-1.0"),
-        .missing = g_strdup("none"),
+        .style = fl_style_new(),
         .oversample = 2,
-        .fps = 24,
-        .border = 15,
-        .scale = 1,
-        .granulation = FL_GRANULATION,
-        .front = FL_FRONT_DEFAULTS,
-        .wash = FL_WASH_DEFAULTS,
-        .sheet = FL_SHEET_DEFAULTS,
         .steps = {60},
         .warm_up = 1,
         .seed = 1,
         .mask_threshold = 0.02f,
         .mask_blur = 1,
-        .paper = {.colour = {244, 239, 228},
-                  .grain_px = 4,
+        .paper = {.grain_px = 4,
                   .roughness = 0.6f,
                   .stretch = 1.3f,
                   .fibre_px = 30,
@@ -48,6 +37,14 @@ static FlRecipe *defaults(void)
                  .weight = 0.3f,
                  .rim_px = 12},
     };
+    FlStyle *style = recipe->style;
+    static const uint8_t paper[] = {244, 239, 228};
+    style->name = g_strdup("Untitled");
+    style->author = g_strdup("fluidy-svg");
+    style->licence = g_strdup("CC0-1.0");
+    style->missing_orientations = g_strdup("none");
+    style->fps = 24, style->border_px = 15;
+    memcpy(style->paper, paper, sizeof paper);
     return recipe;
 }
 
@@ -55,33 +52,17 @@ void fl_recipe_free(FlRecipe *recipe)
 {
     if (!recipe)
         return;
-    g_free(recipe->name);
-    g_free(recipe->character);
-    g_free(recipe->author);
-    g_free(recipe->licence);
-    g_free(recipe->missing);
+    fl_style_free(recipe->style);
     g_free(recipe);
 }
 
 static const FlTableKey recipe_keys[] = {
-    {"name", FL_KEY_OF(TEXT, FlRecipe, name)},
-    {"character", FL_KEY_OF(TEXT, FlRecipe, character)},
-    {"author", FL_KEY_OF(TEXT, FlRecipe, author)},
-    {"licence", FL_KEY_OF(TEXT, FlRecipe, licence)},
-    {"medium", FL_KEY_OF(WORD, FlRecipe, medium), .words = FL_MEDIUM_WORDS},
-    {"missing-orientations", FL_KEY_OF(TEXT, FlRecipe, missing)},
-    {"marks", FL_KEY_OF(WORD, FlRecipe, marks), .words = FL_MARKS_WORDS},
     {"size", FL_KEY_OF(INTEGER, FlRecipe, width), 16, 4096, 2, 2},
     {"frames", FL_KEY_OF(INTEGER, FlRecipe, frames), 1, 10000},
     {"steps", FL_KEY_OF(INTEGER, FlRecipe, steps), 1, 100000, 1, 2},
     {"warm-up", FL_KEY_OF(INTEGER, FlRecipe, warm_up), 1, 1000000},
     {"oversample", FL_KEY_OF(INTEGER, FlRecipe, oversample), 1, 3},
     {"seed", FL_KEY_OF(INTEGER, FlRecipe, seed), 0, 1 << 24},
-    {"fps", FL_KEY_OF(NUMBER, FlRecipe, fps), 1, 240},
-    {"border", FL_KEY_OF(NUMBER, FlRecipe, border), 1, 1000},
-    {"scale", FL_KEY_OF(NUMBER, FlRecipe, scale), 0.01, 100},
-    {"granulation", FL_KEY_OF(NUMBER, FlRecipe, granulation), -1, 1},
-    {"melt", FL_KEY_OF(NUMBER, FlRecipe, melt), 0, 1},
     {"mask-threshold", FL_KEY_OF(NUMBER, FlRecipe, mask_threshold), 1e-4, 10},
     {"mask-blur", FL_KEY_OF(NUMBER, FlRecipe, mask_blur), 0, 50},
 };
@@ -90,7 +71,6 @@ static const FlTableKey recipe_keys[] = {
 G_STATIC_ASSERT(offsetof(FlRecipe, height) == offsetof(FlRecipe, width) + sizeof(int));
 
 static const FlTableKey paper_keys[] = {
-    {"colour", FL_KEY_OF(COLOUR, FlPaper, colour)},
     {"grain", FL_KEY_OF(NUMBER, FlPaper, grain_px), 0.5, 100},
     {"roughness", FL_KEY_OF(NUMBER, FlPaper, roughness), 0, 1},
     {"stretch", FL_KEY_OF(NUMBER, FlPaper, stretch), 0.1, 10},
@@ -168,21 +148,6 @@ static const FlKeyTable recipe_table = TABLE(recipe_keys), paper_table = TABLE(p
                         flow_table = TABLE(flow_keys), dust_table = TABLE(dust_keys),
                         pigment_table = TABLE(pigment_keys), event_table = TABLE(event_keys);
 
-/* The sections that there is one of. */
-static const struct {
-    const char *name;
-    const FlKeyTable *table;
-    size_t offset; // of its struct
-} single[] = {
-    {"recipe", &recipe_table, 0},
-    {"front", &fl_front_table, offsetof(FlRecipe, front)},
-    {"wash", &fl_wash_table, offsetof(FlRecipe, wash)},
-    {"sheet", &fl_sheet_table, offsetof(FlRecipe, sheet)},
-    {"paper", &paper_table, offsetof(FlRecipe, paper)},
-    {"flow", &flow_table, offsetof(FlRecipe, flow)},
-    {"dust", &dust_table, offsetof(FlRecipe, dust)},
-};
-
 /* A section of the file. */
 typedef struct Section {
     FlKeySection keys;
@@ -233,19 +198,27 @@ static FlEvent *begin_event(FlRecipe *recipe, GError **error)
 static bool begin_section(void *data, const char *name, int line, GError **error)
 {
     Reader *reader = data;
-    FlKeySection keys = {.mistake = FL_ERROR_INPUT};
+    FlRecipe *recipe = reader->recipe;
+    FlStyle *style = recipe->style;
+    const FlKeySection single[] = {
+        {"recipe", &recipe_table, recipe},         {"style", &fl_style_table, style},
+        {"front", &fl_front_table, &style->front}, {"wash", &fl_wash_table, &style->wash},
+        {"sheet", &fl_sheet_table, &style->sheet}, {"paper", &paper_table, &recipe->paper},
+        {"flow", &flow_table, &recipe->flow},      {"dust", &dust_table, &recipe->dust}};
+    FlKeySection keys = {0};
     for (size_t i = 0; i < G_N_ELEMENTS(single); i++)
         if (strcmp(name, single[i].name) == 0)
-            keys.table = single[i].table, keys.object = (char *)reader->recipe + single[i].offset;
+            keys = single[i];
+    keys.mistake = FL_ERROR_INPUT;
     if (g_str_has_prefix(name, "pigment "))
         keys.table = &pigment_table,
-        keys.object = begin_pigment(reader->recipe, name + strlen("pigment "), error);
+        keys.object = begin_pigment(recipe, name + strlen("pigment "), error);
     else if (g_str_has_prefix(name, "event "))
-        keys.table = &event_table, keys.object = begin_event(reader->recipe, error);
+        keys.table = &event_table, keys.object = begin_event(recipe, error);
     else if (!keys.table)
         return fl_fail(error, FL_ERROR_INPUT,
-                       "[%s] is not a group of a recipe: expected recipe, front, wash, sheet, "
-                       "paper, flow, dust, pigment NAME or event NAME",
+                       "[%s] is not a group of a recipe: expected recipe, style, front, wash, "
+                       "sheet, paper, flow, dust, pigment NAME or event NAME",
                        name);
     const Section section = {keys, line, g_strdup(name)};
     g_array_append_val(reader->sections, section);

@@ -14,7 +14,6 @@
 
 /** The sheet. Lengths in px of the finished frames. */
 typedef struct FlPaper {
-    uint8_t colour[3];
     float grain_px;    // size of the bumps of the surface
     float roughness;   // depth of the finest bumps relative to the coarse ones, 0..1
     float stretch;     // length of the bumps along x over that along y
@@ -73,22 +72,13 @@ typedef struct FlDust {
 } FlDust;
 
 typedef struct FlRecipe {
-    char *name, *author, *licence, *missing;
-    char *character;           // NULL: not given
+    FlStyle *style;            // all that style.ini will say; no frames
     int width, height, frames; // px
     int oversample;            // cells per px, 1..3
-    float fps, border, scale;
-    float granulation;     // as of fl_granulate()
-    float melt;            // as of FlStyle
     int steps[2], warm_up; // steps before the second and before the last frame; before the first
     int seed;
     float mask_threshold; // least thickness of paint
     float mask_blur;      // radius over which the thickness is averaged, px
-    FlFrontStyle front;
-    FlWashStyle wash;
-    FlSheetStyle sheet;
-    FlMedium medium;
-    FlMarks marks;
     FlPaper paper;
     FlFlow flow;
     FlDust dust;

@@ -188,7 +188,7 @@ static void cell_colour(const FlSheet *sheet, const FlRecipe *recipe, int i, int
     }
     const double lit = light(sheet, recipe, i, j);
     for (int c = 0; c < 3; c++) {
-        const FlKmLayer paper = {fmin(1, recipe->paper.colour[c] / 255.0 * lit), 0};
+        const FlKmLayer paper = {fmin(1, recipe->style->paper[c] / 255.0 * lit), 0};
         const FlKmLayer paint = fl_km_layer(k_sum[c], s_sum[c], (double)recipe->flow.thickness);
         rgb[c] += thickness > 0 ? fl_km_over(paint, paper).reflectance : paper.reflectance;
     }

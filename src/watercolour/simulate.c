@@ -49,30 +49,13 @@ static FlStyle *new_style(const FlRecipe *recipe, int size, const char *recipe_p
 {
     const int width = size * recipe->width, height = size * recipe->height;
     const size_t pixels = (size_t)width * (size_t)height * (size_t)recipe->frames;
-    g_autoptr(FlStyle) style = g_new(FlStyle, 1);
-    *style = (FlStyle){
-        .name = g_strdup(recipe->name),
-        .path = g_strdup(recipe_path),
-        .character = g_strdup(recipe->character),
-        .author = g_strdup(recipe->author),
-        .licence = g_strdup(recipe->licence),
-        .made_by = g_path_get_basename(recipe_path),
-        .missing_orientations = g_strdup(recipe->missing),
-        .width = width,
-        .height = height,
-        .n_frames = recipe->frames,
-        .fps = recipe->fps,
-        .border_px = recipe->border * (float)size,
-        .scale = recipe->scale / (float)size,
-        .granulation = recipe->granulation,
-        .melt = recipe->melt,
-        .front = recipe->front,
-        .wash = recipe->wash,
-        .sheet = recipe->sheet,
-        .medium = recipe->medium,
-        .marks = recipe->marks,
-    };
-    memcpy(style->paper, recipe->paper.colour, sizeof style->paper);
+    g_autoptr(FlStyle) style = fl_style_like(recipe->style);
+    style->path = g_strdup(recipe_path);
+    g_free(style->made_by);
+    style->made_by = g_path_get_basename(recipe_path);
+    style->width = width, style->height = height, style->n_frames = recipe->frames;
+    style->border_px = recipe->style->border_px * (float)size;
+    style->scale = recipe->style->scale / (float)size;
     if (!(style->rgb = fl_alloc(pixels, 3, "the frames of a style", error)) ||
         !(style->mask = fl_alloc(pixels, 1, "the masks of a style", error)))
         return NULL;

@@ -11,7 +11,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     g_autoptr(FlRecipe) recipe = fl_recipe_load(path, &error);
     g_assert_true((recipe == NULL) == (error != NULL));
     if (recipe)
-        g_assert_true(isfinite(recipe->fps) && recipe->n_events <= FL_MAX_EVENTS);
+        g_assert_true(isfinite(recipe->style->fps) && recipe->n_events <= FL_MAX_EVENTS);
     fuzz_file_end(fd);
     return 0;
 }
