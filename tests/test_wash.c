@@ -420,6 +420,45 @@ static void all_of_a_limb_has_its_wash(void)
     g_assert_cmpint(most, >, least + 4);
 }
 
+/* The mean tone along a pass of the brush, that is dry where its edge is crisp. */
+static float tone_along_pass(float pass, bool crisp)
+{
+    enum { N = 256 };
+    FlWash wash = {.style = {.wash = 1, .passes = 1},
+                   .key = 1,
+                   .brush_px = 80,
+                   .along = {1, 0},
+                   .width = N,
+                   .height = 1};
+    g_autofree float *planes = g_new0(float, FL_WASH_PLANES *N);
+    float tones[N], hues[N], sum = 0;
+    for (int k = 0; k < FL_WASH_PLANES; k++)
+        wash.plane[k] = planes + (size_t)k * N;
+    for (int i = 0; i < N; i++) {
+        wash.plane[FL_WASH_PASS][i] = pass, wash.plane[FL_WASH_LINES][i] = 1;
+        wash.plane[FL_WASH_DRY][i] = crisp ? 1 : -1;
+        wash.plane[FL_WASH_X][i] = 12.5f * (float)i;
+    }
+    fl_wash_find_tones(&wash, tones, hues);
+    for (int i = 0; i < N; i++)
+        sum += tones[i] / N;
+    return sum;
+}
+
+/* Where the edge of a pass grows wide, the tone beside it hardly changes: a crisp stretch is no
+ * patch with ends. */
+static void edges_of_passes_are_lost_in_their_place(void)
+{
+    float lost = 0, between = 0;
+    for (int k = 0; k < 40; k++) {
+        const float at = (float)k - .3f;
+        lost += fabsf(tone_along_pass(at, false) - tone_along_pass(at, true));
+        between += fabsf(tone_along_pass(at + .5f, true) - tone_along_pass(at - .5f, true));
+    }
+    g_test_message("%.2f of %.2f", lost, between);
+    g_assert_cmpfloat(lost, <, .2f * between);
+}
+
 static void still_figures_do_not_change(void)
 {
     const char *const still = BLOB " id='still' transform='translate(120 150)'/>";
@@ -919,6 +958,8 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/it-rides-with-its-figure", it_rides_with_its_figure);
     g_test_add_func("/wash/a-limb-carries-its-own", a_limb_carries_its_own);
     g_test_add_func("/wash/all-of-a-limb-has-its-wash", all_of_a_limb_has_its_wash);
+    g_test_add_func("/wash/edges-of-passes-are-lost-in-their-place",
+                    edges_of_passes_are_lost_in_their_place);
     g_test_add_func("/wash/still-figures-do-not-change", still_figures_do_not_change);
     g_test_add_func("/wash/touching-shapes-of-one-fill-are-one-wash",
                     touching_shapes_of_one_fill_are_one_wash);

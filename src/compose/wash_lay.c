@@ -133,15 +133,17 @@ static inline float side_at(float away, float strength, float ragged)
     return fl_smooth(.5f + past / lost_px) - .5f;
 }
 
-/* The load of the brush, mostly within -1..1, with streaks of its hairs where it is dry. */
+/* The load of the brush, mostly within -1..1, with streaks of its hairs where it is dry. The edge
+ * between two passes is in the middle of its width, so that a crisp one ends where it grows wide
+ * and not as a patch of either. */
 static inline float load_at(const Brush *brush, const Fields *slow, int i, float ragged)
 {
     const FlWash *wash = brush->wash;
     const float dry = fl_smooth(3 * slow->plane[FL_WASH_DRY][i]);
-    const float pass = slow->plane[FL_WASH_PASS][i] + .08f * ragged;
+    const float pass = slow->plane[FL_WASH_PASS][i] - .5f + .08f * ragged;
     const int whole = (int)pass - (pass < (float)(int)pass), own = whole & (LOADS - 1);
-    const float width = .5f - .47f * dry, part = pass - (float)whole;
-    const float next = fl_smooth((part - 1 + width) / width);
+    const float width = 1 - .97f * dry, part = pass - (float)whole;
+    const float next = fl_smooth(.5f + (part - .5f) / width);
     const float along =
         wash->along[0] * slow->plane[FL_WASH_X][i] + wash->along[1] * slow->plane[FL_WASH_Y][i];
     const float hairs =
