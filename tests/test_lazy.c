@@ -202,10 +202,10 @@ static double spread_after(const char *preset, const char *uniform, int frames)
 
 static void contrast_stays_where_use_is_equal_and_goes_where_it_is_not(void)
 {
-    const double strict = spread_after("lazyfluids", "1", 20);
-    const double off = spread_after("lazyfluids", "0", 20),
-                 border = spread_after("lazyfluids", "0.5", 20),
-                 sharp = spread_after("lazyfluids-steady", "1", 20);
+    const double strict = spread_after("lazyfluids", "1", 12);
+    const double off = spread_after("lazyfluids", "0", 12),
+                 border = spread_after("lazyfluids", "0.5", 12),
+                 sharp = spread_after("lazyfluids-steady", "1", 12);
     g_test_message("contrast against the exemplar: strict %.2f, nearest %.2f, nearest along the "
                    "border %.2f, sharp vote %.2f",
                    strict, off, border, sharp);

@@ -41,22 +41,22 @@ typedef struct Fit {
     double most;  // that the turn could be
 } Fit;
 
-/* A region as its first frame shows it. */
-typedef struct Begin {
-    Means means;
-    double spread[3]; // about the page's corner: as in FlPose, times the weight
-} Begin;
+/* A region that is followed. */
+typedef struct Region {
+    int first;        // index of its first leaf
+    Fit fit;          // into the frame at hand
+    Means means;      // as its first frame shows it
+    double spread[3]; // likewise, about the page's corner: as in FlPose, times the weight
+    bool begun;       // true after that frame
+    bool limbs;       // true if some of its limbs move by themselves
+} Region;
 
 /* The follower of a film's regions. */
 typedef struct Follower {
     int n_regions;
     float page[2]; // width and height
-    int *first;    // index of each region's first leaf
+    Region *region;
     Leaf *leaf;
-    Fit *fit;     // of each region
-    Begin *begin; // of each region
-    bool *begun;  // true after that frame
-    bool *limbs;  // true if some of its limbs move by themselves
 } Follower;
 
 /* The conjugate of a, times b. */
@@ -207,7 +207,7 @@ static void move(FlAnchor *anchor, const Fit *fit)
 
 static Leaf *leaf_of(const Follower *f, const FlSurveyPart *part)
 {
-    return &f->leaf[f->first[part->region] + part->nth];
+    return &f->leaf[f->region[part->region].first + part->nth];
 }
 
 /* True if a leaf has the same nodes in nearly all frames. If it is traced anew in each, as many
@@ -222,7 +222,7 @@ static void note_leaf(Follower *f, int t, const FlSurveyPart *part)
     Leaf *leaf = leaf_of(f, part);
     const bool known = !leaf->shared && leaf->part && leaf->frame == t - 1;
     if (known)
-        add_leaf(&f->fit[part->region], leaf->part, part, keeps_nodes(leaf), f->page);
+        add_leaf(&f->region[part->region].fit, leaf->part, part, keeps_nodes(leaf), f->page);
     if (known && leaf->limb) {
         Fit own = {{0}};
         add_leaf(&own, leaf->part, part, keeps_nodes(leaf), f->page);
@@ -273,8 +273,9 @@ static void count_leaves(Follower *f, const FlSurvey *survey, int n_leaves)
         f->leaf[k].part = NULL;
     const double side = LIMB_PX * (double)MAX(f->page[0], f->page[1]);
     for (int r = 0; r < f->n_regions; r++) {
-        const int end = r + 1 < f->n_regions ? f->first[r + 1] : n_leaves;
-        choose_limbs(f->leaf + f->first[r], end - f->first[r], side * side);
+        const int first = f->region[r].first;
+        const int end = r + 1 < f->n_regions ? f->region[r + 1].first : n_leaves;
+        choose_limbs(f->leaf + first, end - first, side * side);
     }
 }
 
@@ -282,43 +283,40 @@ static void add_beginning(Follower *f, const FlSurveyPart *part)
 {
     const FlPoint middle = middle_of(part, part->pose.n > 0);
     const double weight = weight_of(part);
-    Begin *begin = &f->begin[part->region];
-    if (f->begun[part->region])
+    Region *region = &f->region[part->region];
+    if (region->begun)
         return;
-    add_means(&begin->means, weight, middle, middle);
-    begin->spread[0] += weight * ((double)part->pose.spread[0] + middle.x * middle.x);
-    begin->spread[1] += weight * ((double)part->pose.spread[1] + middle.y * middle.y);
-    begin->spread[2] += weight * ((double)part->pose.spread[2] + middle.x * middle.y);
+    add_means(&region->means, weight, middle, middle);
+    region->spread[0] += weight * ((double)part->pose.spread[0] + middle.x * middle.x);
+    region->spread[1] += weight * ((double)part->pose.spread[1] + middle.y * middle.y);
+    region->spread[2] += weight * ((double)part->pose.spread[2] + middle.x * middle.y);
 }
 
 #define LONG 1.35 // times as long as it is wide: such a shape has an axis
 
 /* The direction in which a region is longest, degrees; NAN if it is hardly longer than wide. */
-static float axis_of(const Begin *begin)
+static float axis_of(const Region *region)
 {
-    const FlPoint middle = mean_of(&begin->means, begin->means.to);
-    const double weight = begin->means.weight;
-    const double xx = begin->spread[0] / weight - middle.x * middle.x;
-    const double yy = begin->spread[1] / weight - middle.y * middle.y;
-    const double xy = begin->spread[2] / weight - middle.x * middle.y;
+    const FlPoint middle = mean_of(&region->means, region->means.to);
+    const double weight = region->means.weight;
+    const double xx = region->spread[0] / weight - middle.x * middle.x;
+    const double yy = region->spread[1] / weight - middle.y * middle.y;
+    const double xy = region->spread[2] / weight - middle.x * middle.y;
     const double apart = sqrt((xx - yy) * (xx - yy) + 4 * xy * xy);
     const double most = (xx + yy + apart) / 2, least = (xx + yy - apart) / 2;
     return most > LONG * LONG * MAX(least, 1e-6) ? (float)(90 / G_PI * atan2(2 * xy, xx - yy))
                                                  : NAN;
 }
 
-static void begin(Follower *f, int region, FlAnchor *anchor)
+static void begin(Region *region, FlAnchor *anchor)
 {
-    const Means *means = &f->begin[region].means;
-    if (f->begun[region] || means->weight <= 0)
+    if (region->begun || region->means.weight <= 0)
         return;
-    const FlPoint middle = mean_of(means, means->to);
-    *anchor = (FlAnchor){.x = within(middle.x),
-                         .y = within(middle.y),
-                         .cosine = 1,
-                         .axis = axis_of(&f->begin[region])};
+    const FlPoint middle = mean_of(&region->means, region->means.to);
+    *anchor = (FlAnchor){
+        .x = within(middle.x), .y = within(middle.y), .cosine = 1, .axis = axis_of(region)};
     anchor->rest_x = anchor->x, anchor->rest_y = anchor->y;
-    f->begun[region] = true;
+    region->begun = true;
 }
 
 /* The place of a point when its anchor was at rest. */
@@ -370,7 +368,7 @@ static void add_limb(Follower *f, const FlSurveyPart *part, const FlAnchor *anch
     if (leaf->anchor.cosine == 0 && leaf->anchor.sine == 0)
         begin_limb(&leaf->anchor, region, middle);
     const double least = STRAY_PX * (double)MAX(f->page[0], f->page[1]);
-    f->limbs[part->region] |= strays(&leaf->anchor, region, part, least);
+    f->region[part->region].limbs |= strays(&leaf->anchor, region, part, least);
     FlRegionLimb limb = {part->region, {leaf->anchor, (float)middle.x, (float)middle.y, {0}}};
     memcpy(limb.limb.spread, part->pose.spread, sizeof limb.limb.spread);
     g_array_append_val(limbs, limb);
@@ -378,7 +376,8 @@ static void add_limb(Follower *f, const FlSurveyPart *part, const FlAnchor *anch
 
 static void follow(Follower *f, int t, const GArray *parts, FlAnchor *anchor, GArray *limbs)
 {
-    memset(f->fit, 0, (size_t)f->n_regions * sizeof *f->fit);
+    for (int r = 0; r < f->n_regions; r++)
+        f->region[r].fit = (Fit){{0}};
     for (guint i = 0; i < parts->len; i++) {
         const FlSurveyPart *part = &g_array_index(parts, FlSurveyPart, i);
         if (part->region < 0)
@@ -387,8 +386,8 @@ static void follow(Follower *f, int t, const GArray *parts, FlAnchor *anchor, GA
         add_beginning(f, part);
     }
     for (int r = 0; r < f->n_regions; r++) {
-        begin(f, r, &anchor[r]);
-        move(&anchor[r], &f->fit[r]);
+        begin(&f->region[r], &anchor[r]);
+        move(&anchor[r], &f->region[r].fit);
     }
     for (guint i = 0; i < parts->len; i++)
         if (g_array_index(parts, FlSurveyPart, i).region >= 0)
@@ -396,7 +395,7 @@ static void follow(Follower *f, int t, const GArray *parts, FlAnchor *anchor, GA
 }
 
 /* Numbers the leaves of all regions. Returns: how many there are. */
-static int number_leaves(const FlSurvey *survey, int n_regions, int *first)
+static int number_leaves(const FlSurvey *survey, int n_regions, Region *region)
 {
     g_autofree int *n = g_new0(int, n_regions + 1);
     for (int t = 0; t < survey->n_frames; t++)
@@ -407,7 +406,7 @@ static int number_leaves(const FlSurvey *survey, int n_regions, int *first)
         }
     int all = 0;
     for (int r = 0; r < n_regions; r++) {
-        first[r] = all;
+        region[r].first = all;
         all += n[r];
     }
     return all;
@@ -419,7 +418,7 @@ static void drop_limbs(const Follower *f, GArray *limbs)
     guint kept = 0;
     for (guint k = 0; k < limbs->len; k++) {
         const FlRegionLimb limb = g_array_index(limbs, FlRegionLimb, k);
-        if (f->limbs[limb.region])
+        if (f->region[limb.region].limbs)
             g_array_index(limbs, FlRegionLimb, kept++) = limb;
     }
     g_array_set_size(limbs, kept);
@@ -427,16 +426,10 @@ static void drop_limbs(const Follower *f, GArray *limbs)
 
 FlAnchor **fl_region_anchors_find(const FlSurvey *survey, int n_regions, GArray ***limbs)
 {
-    g_autofree int *first = g_new0(int, n_regions + 1);
-    const int n_leaves = number_leaves(survey, n_regions, first);
+    g_autofree Region *region = g_new0(Region, n_regions + 1);
+    const int n_leaves = number_leaves(survey, n_regions, region);
     g_autofree Leaf *leaf = g_new0(Leaf, n_leaves + 1);
-    g_autofree Fit *fit = g_new0(Fit, n_regions + 1);
-    g_autofree Begin *begin = g_new0(Begin, n_regions + 1);
-    g_autofree bool *begun = g_new0(bool, n_regions + 1);
-    g_autofree bool *strayed = g_new0(bool, n_regions + 1);
-    Follower f = {
-        n_regions, {(float)survey->width, (float)survey->height}, first, leaf, fit, begin, begun,
-        strayed};
+    Follower f = {n_regions, {(float)survey->width, (float)survey->height}, region, leaf};
     count_leaves(&f, survey, n_leaves);
     FlAnchor **anchors = g_new0(FlAnchor *, survey->n_frames + 1);
     *limbs = g_new0(GArray *, survey->n_frames + 1);

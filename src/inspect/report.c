@@ -20,6 +20,13 @@
 #define MOST_PIXELS (24e6) // the same of long films: decoded, 300 MB in a browser
 #define GUIDE_FRAMES 3     // frames whose guides are shown
 
+/* Facts of a painter. */
+typedef struct Painter {
+    FlFlicker flicker;
+    FlFollowedPoint point;
+    double seconds; // sum
+} Painter;
+
 struct FlReport {
     const FlShapes *shapes;
     const FlOutputs *outputs;
@@ -31,10 +38,8 @@ struct FlReport {
     double seconds[3]; // paint, compose, write: sums
     GMutex lock;       // of view and use
     FlGuideView view;
-    FlFlicker *flicker;      // by painter
-    FlFollowedPoint *point;  // by painter
-    double *painter_seconds; // by painter: sum
-    FlExemplarUse *use;      // by recording; those with style NULL are unused
+    Painter *painter;
+    FlExemplarUse *use; // by recording; those with style NULL are unused
 };
 
 /* Chooses the size of the pictures, and how many frames have them, within MOST_PIXELS. */
@@ -77,9 +82,7 @@ FlReport *fl_report_new(const FlShapes *shapes, const FlOutputs *outputs,
     g_autoptr(FlReport) report = g_new0(FlReport, 1);
     report->shapes = shapes, report->outputs = outputs, report->background = background;
     g_mutex_init(&report->lock);
-    report->flicker = g_new0(FlFlicker, MAX(shapes->n_painted, 1));
-    report->point = g_new0(FlFollowedPoint, MAX(shapes->n_painted, 1));
-    report->painter_seconds = g_new0(double, MAX(shapes->n_painted, 1));
+    report->painter = g_new0(Painter, MAX(shapes->n_painted, 1));
     report->use = g_new0(FlExemplarUse, MAX(shapes->n_painted, 1));
     choose_size(report);
     if (!fl_guide_view_init(&report->view, report->width, report->height, error) ||
@@ -93,13 +96,11 @@ void fl_report_free(FlReport *report)
     if (!report)
         return;
     for (int p = 0; p < report->shapes->n_painted; p++) {
-        fl_flicker_clear(&report->flicker[p]);
+        fl_flicker_clear(&report->painter[p].flicker);
         fl_exemplar_use_clear(&report->use[p]);
     }
-    g_free(report->flicker);
-    g_free(report->point);
+    g_free(report->painter);
     g_free(report->use);
-    g_free(report->painter_seconds);
     fl_guide_view_clear(&report->view);
     fl_atomic_clear(&report->file);
     g_mutex_clear(&report->lock);
@@ -142,10 +143,10 @@ bool fl_report_guides(FlReport *report, int p, const FlPaintedRegion *painted, i
     if (!report)
         return true;
     if (frame % painted->settings->hold != 0) { // the picture is the last one
-        report->flicker[p].change = 0;
+        report->painter[p].flicker.change = 0;
         return true;
     }
-    fl_followed_point_move(&report->point[p], painted->rect, guides);
+    fl_followed_point_move(&report->painter[p].point, painted->rect, guides);
     bool done = true;
     if (shows_guides(report, frame)) {
         g_mutex_lock(&report->lock);
@@ -153,7 +154,7 @@ bool fl_report_guides(FlReport *report, int p, const FlPaintedRegion *painted, i
         done = add_use(report, painted, error);
         g_mutex_unlock(&report->lock);
     }
-    return done && fl_flicker_measure(&report->flicker[p], painted, guides, error);
+    return done && fl_flicker_measure(&report->painter[p].flicker, painted, guides, error);
 }
 
 /* ---- a frame -------------------------------------------------------------------------------- */
@@ -192,10 +193,10 @@ static void write_painters(FlReport *report, GString *json, const FlReportFrame 
         const double seconds = held ? 0 : painted->seconds;
         fl_json_begin(json, NULL, '[');
         fl_json_number(json, NULL, painted->stats.level[0].energy, searched);
-        fl_json_number(json, NULL, held ? 0 : report->flicker[p].change, true);
+        fl_json_number(json, NULL, held ? 0 : report->painter[p].flicker.change, true);
         fl_json_number(json, NULL, seconds, true);
         g_string_append_c(json, ']');
-        report->painter_seconds[p] += seconds;
+        report->painter[p].seconds += seconds;
     }
     g_string_append_c(json, ']');
 }
@@ -206,7 +207,7 @@ static void write_points(FlReport *report, GString *json, bool pictures)
 {
     fl_json_begin(json, "points", '[');
     for (int p = 0; p < report->shapes->n_painted; p++) {
-        FlFollowedPoint *point = &report->point[p];
+        FlFollowedPoint *point = &report->painter[p].point;
         const float values[] = {point->x, point->y, point->turn, point->found};
         if (!point->here) {
             fl_json_text(json, NULL, NULL);
@@ -276,7 +277,7 @@ static void write_region(const FlReport *report, GString *json, int r)
         g_autofree char *name = g_path_get_basename(style->path);
         fl_json_text(json, "style", name);
         fl_json_number(json, "change", fl_flicker_of_exemplar(style->exemplar), true);
-        fl_json_number(json, "seconds", report->painter_seconds[p], true);
+        fl_json_number(json, "seconds", report->painter[p].seconds, true);
     }
     g_string_append_c(json, '}');
 }
