@@ -457,11 +457,11 @@ same_paint() { # same_paint NAME…: the paint of each is that of sheet/auto
 printf '[project]\npaper = kraft\n' >kraft.conf
 on_paper auto && on_paper cold --paper cold && on_paper bare --paper none --granulation 0 &&
     on_paper relief --paper-relief 0 && on_paper seed --paper-seed 5 && on_paper kraft -c kraft.conf &&
-    same sheet/auto1.png sheet/cold1.png && ! same sheet/auto1.png sheet/bare1.png &&
+    ! same sheet/auto1.png sheet/cold1.png && ! same sheet/auto1.png sheet/bare1.png &&
     ! same sheet/auto1.png sheet/seed1.png && ! same sheet/auto1.png sheet/kraft1.png &&
     ! same sheet/bare1.png sheet/relief1.png && ! same sheet/auto1.png sheet/relief1.png &&
     same_paint cold bare relief seed kraft
-result $? 'paper is cold unless it is said, and changes no paint'
+result $? 'paper is that of the style unless it is said, and changes no paint'
 on_paper white -b '#ffffff' && on_paper white-none -b '#ffffff' --paper none &&
     on_paper white-cold -b '#ffffff' --paper cold && ! same sheet/white1.png sheet/white-cold1.png &&
     ! same sheet/white1.png sheet/white-none1.png
