@@ -168,15 +168,14 @@ double fl_recipe_seconds(const FlRecipe *recipe, int size)
            pixels * size * size * recipe->frames * 6e-7;
 }
 
-/* The most that it can take beyond the estimate, seconds of one core: each iteration of a stage
- * takes a cell some 6 ns, a fibre a px some 20 ns, and a try to place a grain 50 ns an event. */
+/* The most that it can take beyond the estimate, seconds of one core: a fibre takes a px some 20
+ * ns, and a try to place a grain 50 ns an event. */
 static double most_seconds(const FlRecipe *recipe, int size)
 {
     enum { TRIES = 1000 }; // to place a grain
     const double pixels = (double)recipe->width * recipe->height, cells = recipe->oversample;
     const double fibres = recipe->paper.fibres * pixels / 100;
     return fl_recipe_seconds(recipe, size) +
-           steps_of(recipe) * pixels * cells * cells * recipe->n_pigments * 6e-9 +
            fibres * recipe->paper.fibre_px * cells * cells * cells * 2e-8 +
            (double)recipe->dust.grains * TRIES * recipe->n_events * 5e-8;
 }

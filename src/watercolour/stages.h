@@ -1,4 +1,4 @@
-/* The stages of one step of the simulation, in their order; one file each [C97 §4]. */
+/* The stages of one step of the simulation, in their order [C97 §4]. */
 #ifndef FLUIDY_WATERCOLOUR_STAGES_H
 #define FLUIDY_WATERCOLOUR_STAGES_H
 
