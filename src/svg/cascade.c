@@ -478,7 +478,7 @@ static bool takes_geometry(const xmlNode *node, const char *name)
 
 /** Puts one value into effect: as a declaration, an attribute, or for css_effects to do. */
 static void apply(Cascade *c, xmlNode *node, const Value *v, const Style *style, GString *text,
-                  FlCssEffects *effects)
+                  GHashTable **effects)
 {
     g_autofree char *value = compute(c, v->name, v->property, v->text, style);
     switch (v->property->kind) {
@@ -487,7 +487,9 @@ static void apply(Cascade *c, xmlNode *node, const Value *v, const Style *style,
     case FL_CSS_TRANSFORM:
     case FL_CSS_REFERENCE:
     case FL_CSS_RESOLVED:
-        fl_css_effects_set(effects, v->name, g_steal_pointer(&value));
+        if (!*effects)
+            *effects = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free);
+        g_hash_table_insert(*effects, (gpointer)v->name, g_steal_pointer(&value));
         break;
     case FL_CSS_GEOMETRY:
         if (strcmp(value, "inherit") == 0)
@@ -535,7 +537,7 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     g_autoptr(xmlChar) written = fl_attribute(node, "style");
     g_autoptr(GArray) own = fl_css_declarations(written ? (const char *)written : "");
     g_autoptr(GArray) values = declared_values(c, node, around->shown, own);
-    g_auto(FlCssEffects) effects = {0};
+    g_autoptr(GHashTable) effects = NULL;
     g_autoptr(GPtrArray) owned = g_ptr_array_new_with_free_func(g_free);
     Style style = {.around = around,
                    .own = around->own,
@@ -570,11 +572,12 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     if (!fl_is(node, "foreignObject"))
         FL_EACH_ELEMENT (child, node)
             visit(c, child, &style);
-    const char *left_out = fl_css_effects_apply(&effects, node, &style.units, &c->n_clips);
+    const char *left_out = fl_css_effects_apply(effects, node, &style.units, &c->n_clips);
     if (copy)
         fl_use_place(node, &style.units);
     if (left_out)
-        warn(c, left_out, fl_css_effects_get(&effects, left_out), "cannot be drawn");
+        warn(c, left_out, effects ? g_hash_table_lookup(effects, left_out) : NULL,
+             "cannot be drawn");
     g_clear_pointer(&style.variables, g_hash_table_unref);
 }
 

@@ -5,34 +5,22 @@
 #include <math.h>
 #include <string.h>
 
-void fl_css_effects_set(FlCssEffects *effects, const char *name, char *value)
+static const char *get(GHashTable *effects, const char *name)
 {
-    if (!effects->value)
-        effects->value = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free);
-    g_hash_table_insert(effects->value, (gpointer)name, value);
-}
-
-const char *fl_css_effects_get(const FlCssEffects *effects, const char *name)
-{
-    return effects->value ? g_hash_table_lookup(effects->value, name) : NULL;
-}
-
-void fl_css_effects_clear(FlCssEffects *effects)
-{
-    g_clear_pointer(&effects->value, g_hash_table_unref);
+    return effects ? g_hash_table_lookup(effects, name) : NULL;
 }
 
 /** A value that is neither missing nor "none". */
-static const char *value_of(const FlCssEffects *effects, const char *name)
+static const char *value_of(GHashTable *effects, const char *name)
 {
-    const char *value = fl_css_effects_get(effects, name);
+    const char *value = get(effects, name);
     return value && *value && strcmp(value, "none") != 0 ? value : NULL;
 }
 
 /** A property, or else the attribute of that name; to be freed. */
-static char *value_or_attribute(const FlCssEffects *effects, const xmlNode *node, const char *name)
+static char *value_or_attribute(GHashTable *effects, const xmlNode *node, const char *name)
 {
-    const char *value = fl_css_effects_get(effects, name);
+    const char *value = get(effects, name);
     g_autoptr(xmlChar) attribute = value ? NULL : fl_attribute(node, name);
     return value && *value ? g_strdup(value) : attribute ? g_strdup((char *)attribute) : NULL;
 }
@@ -73,8 +61,8 @@ static bool own_box(const xmlNode *node, const char *kind, const FlCssUnits *uni
 /* ---- transforms ------------------------------------------------------------------------------ */
 
 /** The box that percentages and the origin refer to [CSS Transforms 1 §5]; the page of the root. */
-static FlCssBox reference_box(const FlCssEffects *effects, const xmlNode *node,
-                              const FlCssUnits *units, bool *known)
+static FlCssBox reference_box(GHashTable *effects, const xmlNode *node, const FlCssUnits *units,
+                              bool *known)
 {
     static const char *const own[] = {"fill-box", "content-box", "stroke-box", "border-box", NULL};
     g_autofree char *kind = value_or_attribute(effects, node, "transform-box");
@@ -117,13 +105,13 @@ static bool multiply_property(FlAffine *all, const char *function, const char *v
 }
 
 /** Multiplies by the place on offset-path [Motion Path 1]; false if it cannot be read. */
-static bool multiply_offset(FlAffine *all, const FlCssEffects *effects, const FlCssUnits *units,
+static bool multiply_offset(FlAffine *all, GHashTable *effects, const FlCssUnits *units,
                             FlCssBox box, FlPoint origin)
 {
     const char *path = value_of(effects, "offset-path");
-    const char *distance = fl_css_effects_get(effects, "offset-distance");
-    const char *rotate = fl_css_effects_get(effects, "offset-rotate");
-    const char *anchor_text = fl_css_effects_get(effects, "offset-anchor");
+    const char *distance = get(effects, "offset-distance");
+    const char *rotate = get(effects, "offset-rotate");
+    const char *anchor_text = get(effects, "offset-anchor");
     const FlCssBox page = {0, 0, units->width, units->height};
     double direction = 0, angle = 0;
     bool evenodd;
@@ -160,10 +148,9 @@ static bool multiply_offset(FlAffine *all, const FlCssEffects *effects, const Fl
  * Makes one attribute of all that moves an element [CSS Transforms 2 §6]. Returns: NULL, or the
  * name of what cannot be read.
  */
-static const char *apply_transform(const FlCssEffects *effects, xmlNode *node,
-                                   const FlCssUnits *units)
+static const char *apply_transform(GHashTable *effects, xmlNode *node, const FlCssUnits *units)
 {
-    const char *css = fl_css_effects_get(effects, "transform");
+    const char *css = get(effects, "transform");
     g_autofree char *origin_text = value_or_attribute(effects, node, "transform-origin");
     g_autoptr(xmlChar) attribute = css ? NULL : fl_attribute(node, "transform");
     const char *translate = value_of(effects, "translate"), *rotate = value_of(effects, "rotate");
@@ -221,12 +208,12 @@ static void add_clip(xmlNode *node, const char *d, bool evenodd, int *n_clips)
     fl_declare(node, declaration);
 }
 
-static const char *apply_clip(const FlCssEffects *effects, xmlNode *node, const FlCssUnits *units,
+static const char *apply_clip(GHashTable *effects, xmlNode *node, const FlCssUnits *units,
                               int *n_clips)
 {
     static const char *const boxes[] = {"fill-box",    "stroke-box", "border-box", "padding-box",
                                         "content-box", "margin-box", "view-box",   NULL};
-    const char *value = fl_css_effects_get(effects, "clip-path");
+    const char *value = get(effects, "clip-path");
     if (!value)
         return NULL;
     g_autofree char *as_it_is = g_strconcat("clip-path:", *value ? value : "none", NULL);
@@ -258,10 +245,10 @@ static const char *apply_clip(const FlCssEffects *effects, xmlNode *node, const 
 
 /** Declares the first word of `mask`. Returns: "mask" if it is a function other than url(), or if
  * the other words would change the picture; else NULL. */
-static const char *apply_mask(const FlCssEffects *effects, xmlNode *node)
+static const char *apply_mask(GHashTable *effects, xmlNode *node)
 {
     static const char *const plain[] = {"luminance", "match-source", "no-clip", "add", NULL};
-    const char *value = fl_css_effects_get(effects, "mask");
+    const char *value = get(effects, "mask");
     if (!value)
         return NULL;
     g_auto(GStrv) part = fl_css_split(value, ' ');
@@ -330,11 +317,10 @@ static char *add_filter(xmlNode *node, const char *function, const FlCssUnits *u
     return g_strdup_printf("url(#%s)", id);
 }
 
-static void apply_filter(const FlCssEffects *effects, xmlNode *node, const FlCssUnits *units,
-                         int *n)
+static void apply_filter(GHashTable *effects, xmlNode *node, const FlCssUnits *units, int *n)
 {
     g_autofree char *value = value_or_attribute(effects, node, "filter");
-    bool changed = fl_css_effects_get(effects, "filter") != NULL;
+    bool changed = get(effects, "filter") != NULL;
     if (!value && !changed)
         return;
     g_auto(GStrv) part = fl_css_split(value ? value : "", ' ');
@@ -352,8 +338,7 @@ static void apply_filter(const FlCssEffects *effects, xmlNode *node, const FlCss
 }
 
 /** The background of the whole page becomes a rectangle below everything. */
-static const char *apply_background(const FlCssEffects *effects, xmlNode *node,
-                                    const FlCssUnits *units)
+static const char *apply_background(GHashTable *effects, xmlNode *node, const FlCssUnits *units)
 {
     const char *name = value_of(effects, "background-color") ? "background-color" : "background";
     const char *value = fl_is_root(node) ? value_of(effects, name) : NULL;
@@ -377,9 +362,9 @@ static const char *apply_background(const FlCssEffects *effects, xmlNode *node,
     return NULL;
 }
 
-static const char *apply_path(const FlCssEffects *effects, xmlNode *node)
+static const char *apply_path(GHashTable *effects, xmlNode *node)
 {
-    const char *value = fl_css_effects_get(effects, "d");
+    const char *value = get(effects, "d");
     g_autofree char *name = NULL, *arguments = NULL;
     if (!value || !*value || !fl_is(node, "path"))
         return NULL;
@@ -459,10 +444,10 @@ static void apply_light(xmlNode *node)
         fl_declare(node, declaration);
 }
 
-const char *fl_css_effects_apply(const FlCssEffects *effects, xmlNode *node,
-                                 const FlCssUnits *units, int *n_clips)
+const char *fl_css_effects_apply(GHashTable *effects, xmlNode *node, const FlCssUnits *units,
+                                 int *n_clips)
 {
-    const char *vector = fl_css_effects_get(effects, "vector-effect");
+    const char *vector = get(effects, "vector-effect");
     const char *problem = apply_path(effects, node);
     if (vector)
         fl_set_attribute(node, "vector-effect", vector);

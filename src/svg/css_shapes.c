@@ -61,14 +61,6 @@ static FlOutlines *outlines_of(const xmlNode *node, const FlCssUnits *units)
     return fl_outlines_of_shape(node, 96, (FlPageSize){units->width, units->height});
 }
 
-static double attribute_length(const xmlNode *node, const char *name, const FlCssUnits *units,
-                               double whole)
-{
-    g_autofree char *text = fl_property(node, name);
-    double value = 0;
-    return text && fl_css_number(text, units, whole, &value) ? value : 0;
-}
-
 static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *units,
                         const FlAffine *map, int depth);
 
@@ -79,8 +71,8 @@ static void add_children(Bounds *bounds, const xmlNode *node, const FlCssUnits *
                             0,
                             0,
                             1,
-                            attribute_length(node, "x", units, units->width),
-                            attribute_length(node, "y", units, units->height)};
+                            fl_length_of(node, "x", units, units->width),
+                            fl_length_of(node, "y", units, units->height)};
     const FlAffine inner = fl_is(node, "svg") ? fl_affine_multiply(map, &place) : *map;
     FL_EACH_ELEMENT (child, node) {
         const FlAffine own = fl_affine_of(child), all = fl_affine_multiply(&inner, &own);
@@ -99,11 +91,11 @@ static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *u
         add_cubic(bounds, &outlines->cubic[i], map);
     if (fl_is(node, "image") || fl_is(node, "foreignObject"))
         for (int k = 0; k < 4; k++) {
-            const double x = attribute_length(node, "x", units, units->width);
-            const double y = attribute_length(node, "y", units, units->height);
+            const double x = fl_length_of(node, "x", units, units->width);
+            const double y = fl_length_of(node, "y", units, units->height);
             const FlPoint corner = {
-                x + (k & 1 ? attribute_length(node, "width", units, units->width) : 0),
-                y + (k & 2 ? attribute_length(node, "height", units, units->height) : 0)};
+                x + (k & 1 ? fl_length_of(node, "width", units, units->width) : 0),
+                y + (k & 2 ? fl_length_of(node, "height", units, units->height) : 0)};
             add_point(bounds, fl_affine_apply(map, corner));
         }
     add_children(bounds, node, units, map, depth);

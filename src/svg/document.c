@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/limits.h"
-#include "svg/css_value.h"
 #include <errno.h>
 #include <gio/gio.h>
 #include <glib/gstdio.h>
@@ -112,6 +111,13 @@ char *fl_inherited_property(const xmlNode *node, const char *name)
             g_clear_pointer(&value, g_free);
     }
     return value;
+}
+
+double fl_length_of(const xmlNode *node, const char *name, const FlCssUnits *units, double whole)
+{
+    g_autofree char *text = fl_property(node, name);
+    double value = 0;
+    return text && fl_css_number(text, units, whole, &value) ? value : 0;
 }
 
 xmlNode *fl_referred_by(const char *value, const char *const *kinds, GHashTable *ids)

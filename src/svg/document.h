@@ -3,6 +3,7 @@
 #define FLUIDY_SVG_DOCUMENT_H
 
 #include "base/warnings.h"
+#include "svg/css_value.h"
 #include <fluidy/error.h>
 #include <libxml/tree.h>
 #include <stdbool.h>
@@ -88,6 +89,9 @@ char *fl_property(const xmlNode *node, const char *name);
 
 /** Likewise, of the innermost element around that says it, if the element itself does not. */
 char *fl_inherited_property(const xmlNode *node, const char *name);
+
+/** A property or attribute that is a length, of which `whole` is 100 %; 0 if it is none. */
+double fl_length_of(const xmlNode *node, const char *name, const FlCssUnits *units, double whole);
 
 /** The element of one of those kinds that a value, url(#id), refers to; NULL without one. */
 xmlNode *fl_referred_by(const char *value, const char *const *kinds, GHashTable *ids);

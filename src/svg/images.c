@@ -3,7 +3,6 @@
 #include "base/file.h"
 #include "base/limits.h"
 #include "svg/cascade.h"
-#include "svg/css_value.h"
 #include "svg/document.h"
 #include "svg/webp.h"
 #include <gdk-pixbuf/gdk-pixbuf.h>
@@ -72,9 +71,7 @@ static const char *kind_of(const guint8 *data, gsize bytes)
 static double side_of(const xmlNode *node, const char *name)
 {
     static const FlCssUnits units = {.font_size = 16, .root_font_size = 16};
-    g_autoptr(xmlChar) text = fl_attribute(node, name);
-    double px = 0;
-    return text && fl_css_number((const char *)text, &units, 0, &px) && px > 0 ? px : 0;
+    return fmax(fl_length_of(node, name, &units, 0), 0);
 }
 
 static bool is_auto(const xmlNode *node, const char *name)

@@ -148,17 +148,10 @@ void fl_use_give_size(xmlNode *use, xmlNode *copy)
     }
 }
 
-static double place_of(const xmlNode *use, const char *name, const FlCssUnits *units, double whole)
-{
-    g_autoptr(xmlChar) text = fl_attribute(use, name);
-    double place;
-    return text && fl_css_number((const char *)text, units, whole, &place) ? place : 0;
-}
-
 void fl_use_place(xmlNode *use, const FlCssUnits *units)
 {
-    const double x = place_of(use, "x", units, units->width);
-    const double y = place_of(use, "y", units, units->height);
+    const double x = fl_length_of(use, "x", units, units->width);
+    const double y = fl_length_of(use, "y", units, units->height);
     const FlAffine own = fl_affine_of(use), move = {1, 0, 0, 1, x, y};
     const FlAffine both = fl_affine_multiply(&own, &move);
     g_autofree char *text = fl_affine_text(&both);
