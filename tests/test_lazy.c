@@ -88,15 +88,15 @@ static void paint(Film *film, int frames)
 
 #define CUT_OUT_RED 200 // of a cut-out, which has one colour: this, 120, 40
 
-/* A still disc that is cut out, full but for soft holes in its middle. */
-static FlStyle *cut_out(void)
+/* A still disc that is cut out, full but for soft holes in its middle, or without them. */
+static FlStyle *cut_out(bool holes)
 {
     FlStyle *style = small_style();
     style->n_frames = 1, style->cut_out = true;
     for (int p = 0; p < STYLE_W * STYLE_H; p++) {
         const int x = p % STYLE_W, y = p / STYLE_W;
         const double inside = 22 - hypot(x - STYLE_W / 2, y - STYLE_H / 2);
-        const double hole = CLAMP(inside / 4 - 2, 0, 1) * small_blotches(x, y) * 1.6;
+        const double hole = holes * CLAMP(inside / 4 - 2, 0, 1) * small_blotches(x, y) * 1.6;
         const double alpha = CLAMP(inside / 4, 0, 1) * (1 - CLAMP(hole - .3, 0, 1));
         style->mask[p] = (uint8_t)lrint(255 * alpha);
         for (int c = 0; c < 3; c++)
@@ -122,7 +122,7 @@ static void alpha_within(const uint8_t *alpha, int width, int height, double rad
 static void a_cut_out_has_the_alpha_of_its_exemplar_and_no_paper_in_its_colours(void)
 {
     g_auto(Film) film;
-    film_init(&film, cut_out(), "lazyfluids", "1");
+    film_init(&film, cut_out(true), "lazyfluids", "1");
     turn_by(&film, .05);
     paint(&film, 6);
     double mean, thin, mean_there, thin_there;
@@ -244,7 +244,7 @@ static void below_1_the_border_is_matched_freely(void)
     uint8_t alpha[3][PIXELS];
     for (int k = 0; k < 3; k++) {
         g_auto(Film) film;
-        film_init(&film, cut_out(), "lazyfluids", uniform[k]);
+        film_init(&film, cut_out(true), "lazyfluids", uniform[k]);
         paint(&film, 1);
         memcpy(alpha[k], film.alpha, PIXELS);
     }
@@ -495,6 +495,26 @@ static void motion_blur_spreads_to_both_sides_of_the_frame(void)
     }
 }
 
+/* Equal use of a small exemplar lays patches of its rim inside, unless they are border. */
+static void the_rim_of_an_exemplar_leaves_no_spots_inside(void)
+{
+    g_auto(Film) film;
+    film_init(&film, cut_out(false), "lazyfluids", "1");
+    film.params->border = 3;
+    fl_lazy_free(film.lazy);
+    film.lazy = fl_lazy_new(film.exemplar, film.params, FL_RECORDING_WRAP,
+                            (FlSynthSize){SIDE, SIDE, SIDE, SIDE}, 3, NULL);
+    turn_by(&film, .05);
+    paint(&film, 4);
+    double mean, thin;
+    alpha_within(film.alpha, SIDE, SIDE, 24, &mean, &thin);
+    int spots = 0;
+    for (int p = 0; p < PIXELS; p++)
+        spots += film.guides.distance[p] > 6 && film.alpha[p] < 220;
+    g_test_message("alpha %.1f, %d spots", mean, spots);
+    g_assert_cmpint(spots, ==, 0);
+}
+
 /* A disc whose mask has a margin of 3 px in which the paper is bare. */
 static FlStyle *with_margin(void)
 {
@@ -549,6 +569,8 @@ int main(int argc, char **argv)
                     motion_blur_keeps_what_rests_and_what_is_flat);
     g_test_add_func("/lazy/motion-blur-spreads-to-both-sides-of-the-frame",
                     motion_blur_spreads_to_both_sides_of_the_frame);
+    g_test_add_func("/lazy/the-rim-of-an-exemplar-leaves-no-spots-inside",
+                    the_rim_of_an_exemplar_leaves_no_spots_inside);
     g_test_add_func("/lazy/the-bare-margin-of-masks-is-no-fluid",
                     the_bare_margin_of_masks_is_no_fluid);
     return g_test_run();

@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/curves.h"
 #include "guides/blur.h"
+#include "guides/laplace.h"
 #include "lazy/fluid_exemplar.h"
 #include <math.h>
 #include <string.h>
@@ -17,52 +18,26 @@ static void motion_at(const FlGuides *guides, size_t p, float motion[2])
                                 : (float)guides->motion[k] / FL_MOTION_ONE;
 }
 
-/* The mean of the known ones of eight neighbours. */
-static bool mean_around(const float *motion, int width, int height, int x, int y, float mean[2])
-{
-    float sum[2] = {0}, n = 0;
-    for (int v = MAX(y - 1, 0); v <= MIN(y + 1, height - 1); v++)
-        for (int u = MAX(x - 1, 0); u <= MIN(x + 1, width - 1); u++) {
-            const float *m = motion + 2 * ((size_t)v * (size_t)width + (size_t)u);
-            if (isnan(m[0]))
-                continue;
-            sum[0] += m[0], sum[1] += m[1], n++;
-        }
-    mean[0] = sum[0] / MAX(n, 1), mean[1] = sum[1] / MAX(n, 1);
-    return n > 0;
-}
-
-/* One pixel farther, outside the mask only: inside, the unknown is new. */
-static void continue_motion(const FlGuides *guides, const float *motion, float *wider)
-{
-    const int width = guides->width, height = guides->height;
-#pragma omp parallel for schedule(static)
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            const size_t p = (size_t)y * (size_t)width + (size_t)x;
-            float mean[2];
-            memcpy(wider + 2 * p, motion + 2 * p, sizeof mean);
-            if (isnan(motion[2 * p]) && guides->mask[p] < FL_INSIDE &&
-                mean_around(motion, width, height, x, y, mean))
-                memcpy(wider + 2 * p, mean, sizeof mean);
-        }
-}
-
 bool fl_lazy_motion(const FlGuides *guides, int reach, float *motion, GError **error)
 {
     const size_t pixels = (size_t)guides->width * (size_t)guides->height;
-    g_autofree float *other = fl_alloc(2 * pixels, sizeof *other, "a flow field", error);
-    if (!other)
+    g_autofree uint8_t *cell = fl_alloc(pixels, 1, "a flow field", error);
+    if (!cell)
         return false;
     for (size_t p = 0; p < pixels; p++) {
-        motion[2 * p] = motion[2 * p + 1] = NAN;
-        if (guides->mask[p] >= FL_INSIDE)
+        const bool inside = guides->mask[p] >= FL_INSIDE;
+        if (inside)
             motion_at(guides, p, motion + 2 * p);
+        cell[p] = inside && !isnan(motion[2 * p])                 ? FL_CELL_FIXED
+                  : inside || guides->distance[p] < -(float)reach ? FL_CELL_OUTSIDE
+                                                                  : FL_CELL_FREE;
     }
-    for (int k = 0; k < reach; k++) {
-        continue_motion(guides, motion, other);
-        memcpy(motion, other, 2 * pixels * sizeof *motion);
-    }
+    const bool known = memchr(cell, FL_CELL_FIXED, pixels);
+    if (!fl_laplace_solve(cell, guides->width, guides->height, 0, motion, error))
+        return false;
+    for (size_t p = 0; p < pixels; p++)
+        if (!known || cell[p] == FL_CELL_OUTSIDE)
+            motion[2 * p] = motion[2 * p + 1] = NAN;
     return true;
 }
 
