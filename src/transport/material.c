@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/curves.h"
+#include "guides/blur.h"
 #include <math.h>
 #include <string.h>
 
@@ -13,6 +14,7 @@
 #define TORN 1.5f
 #define SHARED 0.1f // change of a share by px
 #define ENDED 0.3f
+#define LEAST_INSIDE 0.01f // share of the surroundings of a pixel
 
 void fl_material_clear(FlMaterial *material)
 {
@@ -209,34 +211,14 @@ bool fl_material_whole(const FlMaterial *material, const FlMaterial *share, cons
     return true;
 }
 
-/* Sums over `reach` before and after each of n values that are `step` apart. */
-static void sum_line(const float *in, int n, int step, int reach, double *before, float *out)
-{
-    before[0] = 0;
-    for (int i = 0; i < n; i++)
-        before[i + 1] = before[i] + (double)in[i * step];
-    for (int i = 0; i < n; i++)
-        out[i * step] = (float)(before[MIN(i + reach + 1, n)] - before[MAX(i - reach, 0)]);
-}
-
-static void sum_around(float *value, FlRect rect, int reach, double *before)
-{
-    for (int y = 0; y < rect.height; y++)
-        sum_line(value + (size_t)y * (size_t)rect.width, rect.width, 1, reach, before,
-                 value + (size_t)y * (size_t)rect.width);
-    for (int x = 0; x < rect.width; x++)
-        sum_line(value + x, rect.height, rect.width, reach, before, value + x);
-}
-
 bool fl_material_strain(const FlMaterial *material, const FlGuides *guides, int reach_px,
                         float *strain, GError **error)
 {
     const FlRect rect = material->rect;
     const size_t n = fl_rect_pixels(rect);
     g_autofree float *inside = fl_alloc(n, sizeof(float), "a strain", error);
-    g_autofree double *before =
-        fl_alloc((size_t)MAX(rect.width, rect.height) + 1, sizeof(double), "a strain", error);
-    if (!inside || !before)
+    const float sigma = (float)reach_px / sqrtf(3); // as much spread as a square of that reach
+    if (!inside)
         return false;
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
@@ -246,10 +228,11 @@ bool fl_material_strain(const FlMaterial *material, const FlGuides *guides, int 
             inside[p] = fl_material_is_inside(material, guides, x, y);
             strain[p] = inside[p] > 0 ? strain_of(f) : 0;
         }
-    sum_around(inside, rect, reach_px, before);
-    sum_around(strain, rect, reach_px, before);
+    if (!fl_blur(inside, rect.width, rect.height, sigma, error) ||
+        !fl_blur(strain, rect.width, rect.height, sigma, error))
+        return false;
     for (size_t p = 0; p < n; p++)
-        strain[p] /= fmaxf(inside[p], 1);
+        strain[p] /= fmaxf(inside[p], LEAST_INSIDE);
     return true;
 }
 
