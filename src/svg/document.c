@@ -52,14 +52,23 @@ xmlChar *fl_attribute(const xmlNode *node, const char *name)
     return xmlGetNoNsProp(node, (const xmlChar *)name);
 }
 
+/** The text of an attribute, to be freed with g_free(). */
+static char *text_of(const xmlAttr *a)
+{
+    const xmlNode *only = a->children && !a->children->next ? a->children : NULL;
+    if (only && only->type == XML_TEXT_NODE) // as nearly all are
+        return g_strdup((const char *)only->content);
+    g_autoptr(xmlChar) text = xmlNodeListGetString(a->doc, a->children, 1);
+    return g_strdup(text ? (const char *)text : "");
+}
+
 char *fl_foreign_attribute(const xmlNode *node, const char *name)
 {
     for (const xmlAttr *a = node->properties; a; a = a->next) {
         const char *colon = strchr((const char *)a->name, ':');
         if ((!a->ns && !colon) || strcmp(colon ? colon + 1 : (const char *)a->name, name) != 0)
             continue;
-        g_autoptr(xmlChar) value = xmlNodeListGetString(node->doc, a->children, 1);
-        return g_strstrip(g_strdup(value ? (const char *)value : ""));
+        return g_strstrip(text_of(a));
     }
     return NULL;
 }
@@ -80,11 +89,9 @@ char *fl_property(const xmlNode *node, const char *name)
             style = a;
     if (!own && !style)
         return NULL;
-    g_autoptr(xmlChar) declared =
-        style ? xmlNodeListGetString(node->doc, style->children, 1) : NULL;
-    char *value = NULL;
-    if (declared && strstr((const char *)declared, name)) {
-        g_auto(GStrv) parts = g_strsplit((const char *)declared, ";", -1);
+    g_autofree char *declared = style ? text_of(style) : NULL, *value = NULL;
+    if (declared && strstr(declared, name)) {
+        g_auto(GStrv) parts = g_strsplit(declared, ";", -1);
         for (int i = 0; parts[i]; i++) {
             char *colon = strchr(parts[i], ':');
             if (!colon)
@@ -96,10 +103,7 @@ char *fl_property(const xmlNode *node, const char *name)
             }
         }
     }
-    if (value)
-        return value;
-    g_autoptr(xmlChar) attribute = own ? xmlNodeListGetString(node->doc, own->children, 1) : NULL;
-    return own ? g_strstrip(g_strdup(attribute ? (const char *)attribute : "")) : NULL;
+    return value ? g_steal_pointer(&value) : own ? g_strstrip(text_of(own)) : NULL;
 }
 
 char *fl_inherited_property(const xmlNode *node, const char *name)

@@ -278,7 +278,7 @@ static void mask_clear(void *data)
     g_free(((FlGroupMask *)data)->group);
 }
 
-FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole)
+FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole, GHashTable *ids)
 {
     FlLeaves *leaves = g_new0(FlLeaves, 1);
     leaves->leaf = g_array_new(FALSE, FALSE, sizeof(FlLeaf));
@@ -290,12 +290,11 @@ FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole)
     Walk w = {.whole = whole, .leaves = leaves, .unit = -1, .mask = -1};
     for (int k = 0; k < N_LISTS; k++)
         w.list[k] = g_string_new(NULL);
-    w.by_id = fl_document_ids(doc);
+    w.by_id = leaves->ids = ids;
     if (whole && g_strv_contains(whole, FL_WHOLE_ALL))
         add_all(&w, xmlDocGetRootElement(doc));
     else
         walk(&w, xmlDocGetRootElement(doc));
-    leaves->ids = w.by_id;
     for (int k = 0; k < N_LISTS; k++)
         g_string_free(w.list[k], TRUE);
     return leaves;

@@ -59,9 +59,9 @@ char *fl_leaf_key(const FlLeaf *leaf);
 /**
  * Lists the leaves and gives each an id if it lacks one. Content with display: none is left out.
  * Elements of `whole`, see fl_is_whole(), are leaves; shapes in such an element, see fl_leaf_key(),
- * have one part.
+ * have one part. Takes over `ids`, the elements of the document.
  */
-FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole);
+FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole, GHashTable *ids);
 
 void fl_leaves_free(FlLeaves *leaves); // NULL is fine
 

@@ -34,17 +34,18 @@ static void name_groups(xmlNode *node, GHashTable *ids, int *n_made)
                 made = g_strdup_printf(FL_GROUP_ID "%d", (*n_made)++);
             } while (g_hash_table_contains(ids, made));
             fl_set_attribute(child, "id", made);
+            g_hash_table_insert(ids, g_steal_pointer(&made), child);
         }
         name_groups(child, ids, n_made);
     }
 }
 
-int fl_document_name_groups(xmlDoc *doc)
+GHashTable *fl_document_name_groups(xmlDoc *doc, int *n_made)
 {
-    g_autoptr(GHashTable) ids = fl_document_ids(doc);
-    int n_made = 0;
-    name_groups(xmlDocGetRootElement(doc), ids, &n_made);
-    return n_made;
+    GHashTable *ids = fl_document_ids(doc);
+    *n_made = 0;
+    name_groups(xmlDocGetRootElement(doc), ids, n_made);
+    return ids;
 }
 
 bool fl_is_whole(const xmlNode *node, const char *const *whole)
@@ -156,10 +157,9 @@ static bool normalise(const Work *work, xmlNode *node, GError **error)
     return true;
 }
 
-bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *path, int number,
-                           FlWarnings *warnings, GError **error)
+bool fl_document_normalise(xmlDoc *doc, const char *const *whole, GHashTable *ids, const char *path,
+                           int number, FlWarnings *warnings, GError **error)
 {
-    g_autoptr(GHashTable) ids = fl_document_ids(doc);
     const Work work = {whole, path, number, warnings, ids};
     return normalise(&work, xmlDocGetRootElement(doc), error);
 }

@@ -10,8 +10,9 @@
 
 #define FL_SHAPE_AT "fl-shape-at-" // and FlLeaf.tree: in place of the id of a shape without one
 
-/** Gives an id to every drawn <g>, <svg>, <a> and <use> without one, in document order. */
-int fl_document_name_groups(xmlDoc *doc);
+/** Gives an id to every drawn <g>, <svg>, <a> and <use> without one, in document order. Returns:
+ * all elements by id, as fl_document_ids() does. */
+GHashTable *fl_document_name_groups(xmlDoc *doc, int *n_made);
 
 /** Returns: true if node is drawn as one leaf: its id is in the list (NULL-terminated, or NULL). */
 bool fl_is_whole(const xmlNode *node, const char *const *whole);
@@ -22,8 +23,8 @@ bool fl_is_whole(const xmlNode *node, const char *const *whole);
  *
  * Returns: false with FL_ERROR_LIMIT if elements lie too deep.
  */
-bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *path, int number,
-                           FlWarnings *warnings, GError **error);
+bool fl_document_normalise(xmlDoc *doc, const char *const *whole, GHashTable *ids, const char *path,
+                           int number, FlWarnings *warnings, GError **error);
 
 /** Returns: true if a <switch> may show this child. */
 bool fl_is_eligible(const xmlNode *node);

@@ -55,10 +55,10 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
     if (!fl_images_check(svg->doc, path, number, svg->files, warnings, error))
         return NULL;
     fl_fonts_add(svg->doc, svg->files);
-    svg->n_nameless = fl_document_name_groups(svg->doc);
-    if (!fl_document_normalise(svg->doc, options->whole, path, number, warnings, error))
+    g_autoptr(GHashTable) ids = fl_document_name_groups(svg->doc, &svg->n_nameless);
+    if (!fl_document_normalise(svg->doc, options->whole, ids, path, number, warnings, error))
         return NULL;
-    svg->leaves = fl_leaves_new(svg->doc, options->whole);
+    svg->leaves = fl_leaves_new(svg->doc, options->whole, g_steal_pointer(&ids));
     return g_steal_pointer(&svg);
 }
 
