@@ -122,7 +122,8 @@ static inline float front_at(const Brush *brush, const Fields *slow, int i, floa
     const float line = .5f * fl_smooth(1 - past / tongue) + .2f * fl_decay(beyond * .08f) +
                        .4f * fl_decay(beyond * .6f);
     const float front = past < 0 ? fl_decay(MAX(-past, 0) * .7f) : line;
-    return (away < -12) | (away > 60) ? 0 : strength * front;
+    const bool far = (away < -12) | (away > 60);
+    return far ? 0 : strength * front;
 }
 
 /* From -.5 on the side that water flooded to .5 beyond its front. */
