@@ -150,6 +150,8 @@ static void smil_transforms_and_follows_paths(void)
     assert_at("<path id='p' d='M0 0h8'/><rect id='a'><animateMotion dur='2s'><mpath "
               "href='#p'/></animateMotion></rect>",
               1, "transform", "translate(4,0) rotate(0)");
+    assert_at(RECT("<animateTransform attributeName='transform' to='8, 4' dur='1s'/>"), .5,
+              "transform", "translate(4 2)");
     assert_at(RECT("<animateMotion path='M0 0v4' dur='1s' repeatCount='2' accumulate='sum'/>"), 1.5,
               "transform", "translate(0,5.9999996) rotate(0)");
 #define TWO(sum)                                                                                   \

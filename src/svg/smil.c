@@ -197,9 +197,15 @@ static char *base_value(const xmlNode *node, const char *name)
 static void apply_transform(const FlAnimation *a, double seconds)
 {
     g_autofree char *type = fl_trimmed_attribute(a->node, "type");
+    static const char *const neutral[2][3] = {{"0", "0 0", "0 0 0"}, {"1", "1 1", "1 1"}};
     const bool scale = type && strcmp(type, "scale") == 0;
+    g_autofree char *to = fl_trimmed_attribute(a->node, "to");
+    int n = 0; // numbers in `to`
+    double ignored;
+    for (const char *s = to; s && fl_number_read(&s, &ignored); s += strspn(s, FL_CSS_SPACE ","))
+        n++;
     bool adds;
-    g_autofree char *value = value_at(a, scale ? "1" : "0", seconds, &adds);
+    g_autofree char *value = value_at(a, neutral[scale][CLAMP(n, 1, 3) - 1], seconds, &adds);
     g_autoptr(xmlChar) own = fl_attribute(a->target, a->attribute);
     if (!value)
         return;
