@@ -50,12 +50,10 @@ float fl_whiteness(const uint8_t fill[3], const uint8_t paper[3])
            fl_clamp((ground[0] - 75) / 10, 0, 1);
 }
 
-/* Drops of paint look like dirt in white. */
-static float drops_of(const FlWashField *field)
+static float white_of(const FlWashField *field)
 {
     const uint8_t *fill = fl_fill_of_film(field->input, field->wash->painted);
-    const float white = fl_whiteness(fill, field->input->background->paper);
-    return field->wash->style.blooms * (1 - white);
+    return fl_whiteness(fill, field->input->background->paper);
 }
 
 /* Wet paint ran along the slopes of the tone, and left ragged ends. */
@@ -83,7 +81,8 @@ static void put_together(const FlWashField *field)
     const float lit = light_of(field);
     const float uneven = .16f + .1f * fl_smooth(field->size / 200 - 1); // puddles need room
     const float large = .5f + .5f * fl_smooth(field->size / 200 - .3f); // short lines are scars
-    const float quiet = 1 - .45f * fl_smooth(field->size / 300 - 1); // a ground is laid with care
+    const float ground = fl_smooth(field->size / 300 - 1);
+    const float quiet = 1 - (.45f + .4f * white_of(field)) * ground; // laid with care, or left bare
     fl_field_find_pools(field, pool);
     fl_field_find_heart(field, heart);
     fl_field_find_breadth(field, breadth);
@@ -212,7 +211,7 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
     }
     find_box(field.wash, input, around);
     field.size = size_of(input, field.wash->painted->region);
-    field.drops = drops_of(&field);
+    field.drops = field.wash->style.blooms * (1 - white_of(&field)); // they look like dirt in white
     field.wash->brush_px = fl_clamp(.5f * field.size, 34, 85);
     find_along(&field);
     const bool made = fl_field_alloc(&field, error) && read_maps(&field, error);
