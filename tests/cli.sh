@@ -161,8 +161,13 @@ refuses 'where a film begins in no sound is refused' 2 '--audio-from says where 
     "$program" whole --styles 01,03 -o sheet.png -f 2 -q >out 2>err && [ -s sheet.png ] && [ ! -s err ]
 result $? '--styles is a sheet'
 "$program" whole -s 01 --methods fluidymation,lazyfluids,lazyfluids:w-uni=0,transport -W 64 >out 2>err &&
-    [ "$(ls fluidy)" = w_methods.png ] && rm -r fluidy
-result $? '--methods is a sheet'
+    [ "$(ls fluidy)" = "$(printf 'w_methods.%s\n' html png)" ] &&
+    grep -q '<dt><b>lazyfluids</b></dt><dd>.*begins again' fluidy/w_methods.html && rm -r fluidy
+result $? '--methods is a sheet and a page'
+: >page.html
+refuses 'a page that exists stays, and no sheet is painted' 1 'page.html: already exists*' \
+    --methods default -o page.png whole
+rm page.html
 "$program" --list-styles -o styles.png >out 2>err && [ -s styles.png ] &&
     grep -qE '^01 +Watercolour +soft and wet' out
 result $? '--list-styles is a list and a sheet'

@@ -43,8 +43,8 @@ figure() {
     shift 4
     case $wanted in *" $name "* | '  ') ;; *) return ;; esac
     "$program" "$@" --methods "$methods" --width "$width" --paper none --overwrite -q -o "$out/$name.png"
-    printf '<h2>%s</h2>\n<p>%s</p>\n<img src="%s.png" alt="">\n' \
-        "$title" "$words" "$name" >>"$page"
+    printf '<h2>%s</h2>\n<p>%s <a href="%s.html">What each row is.</a></p>\n<img src="%s.png" alt="">\n' \
+        "$title" "$words" "$name" "$name" >>"$page"
 }
 
 still="--tint keep --style-by-page off --style-scale .4 --motion auto --fluid none"

@@ -26,7 +26,8 @@ FL_API bool fl_compare_styles(const FlRenderOptions *options, const char *const 
 /**
  * The same for methods instead of styles: "default", "fluidymation", "thesis", "lazyfluids",
  * "lazyfluids-steady", "transport", each perhaps with changed settings, "lazyfluids:w-uni=0". All
- * of options->frames are painted, on a sheet that is "fluidy/NAME_methods.png" by default.
+ * of options->frames are painted. Beside the sheet (NULL: "fluidy/NAME_methods.png") lies a page of
+ * the same name, .html, which says what each row is.
  */
 FL_API bool fl_compare_methods(const FlRenderOptions *options, const char *const *methods,
                                GError **error);

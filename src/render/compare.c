@@ -1,4 +1,4 @@
-/* Sheets: a drawing painted in several styles or by several methods; all styles. */
+/* Sheets and pages: a drawing painted in several styles or by several methods; all styles. */
 #include <fluidy/compare.h>
 #include <fluidy/style.h>
 
@@ -26,6 +26,7 @@
 /* The settings of one row. They follow the caller's settings and override them. */
 typedef struct Variant {
     const char *name; // of the row
+    const char *says; // description on the page, in HTML; "" without a page
     int n;
     FlSetting setting[SETTINGS_MOST];
 } Variant;
@@ -33,11 +34,11 @@ typedef struct Variant {
 /* A kind of comparison. */
 typedef struct Kind {
     const char *noun, *output; // in the note; the default file of the sheet
-    const char *frames;        // unless some are asked for; NULL: all
+    bool has_page;             // beside the sheet
 } Kind;
 
-static const Kind styles_kind = {"style", "fluidy/{name}_styles.png", "~1"};
-static const Kind methods_kind = {"method", "fluidy/{name}_methods.png", NULL};
+static const Kind styles_kind = {"style", "fluidy/{name}_styles.png", false};
+static const Kind methods_kind = {"method", "fluidy/{name}_methods.png", true};
 
 /* A comparison: the drawing and the sheet. */
 typedef struct Comparison {
@@ -48,6 +49,7 @@ typedef struct Comparison {
     FlDrawing *drawing;
     FlContactSheet contact;
     char *path;     // of the sheet
+    char *page;     // beside it; NULL: no page
     int row, frame; // place of the next painted frame
     int n_frames;
     uint8_t *slice; // of the row that is painted: of each frame the line in the middle, RGBA
@@ -60,20 +62,30 @@ static void comparison_clear(Comparison *c)
     fl_contact_sheet_clear(&c->contact);
     free(c->slice);
     g_free(c->path);
+    g_free(c->page);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Comparison, comparison_clear)
 
-/* Names the file of the sheet, which is free if it must be, before the drawing is read. */
-static bool name_sheet(Comparison *c, const FlRenderOptions *complete, GError **error)
+static bool may_write(const Comparison *c, const char *path, GError **error)
+{
+    return !path || c->options.overwrite == FL_OVERWRITE_YES || fl_check_not_exists(path, error);
+}
+
+/* The files of the sheet and the page beside it, free if they must be, before the drawing is read.
+ */
+static bool name_files(Comparison *c, const FlRenderOptions *complete, GError **error)
 {
     const char *wanted = c->options.output;
     g_autoptr(FlSequence) sequence = fl_sequence_from_options(complete, error);
     if (!sequence)
         return false;
     c->path = fl_output_of_film(wanted ? wanted : c->kind->output, sequence->name);
-    return fl_png_named(c->path, "sheets are", error) &&
-           (c->options.overwrite == FL_OVERWRITE_YES || fl_check_not_exists(c->path, error));
+    if (!fl_png_named(c->path, "sheets are", error))
+        return false;
+    g_autofree char *stem = g_strndup(c->path, strlen(c->path) - strlen(".png"));
+    c->page = c->kind->has_page ? g_strconcat(stem, ".html", NULL) : NULL;
+    return may_write(c, c->path, error) && may_write(c, c->page, error);
 }
 
 static bool has_slice(const Comparison *c)
@@ -98,17 +110,18 @@ static bool comparison_init(Comparison *c, const Kind *kind, const FlRenderOptio
                             int n_rows, GError **error)
 {
     *c = (Comparison){.kind = kind, .options = *options, .caller = fl_caller_of(options)};
-    if (!c->options.frames)
-        c->options.frames = kind->frames;
+    if (!c->options.frames && !kind->has_page)
+        c->options.frames = "~1";
     if (!(c->config = fl_config_load(options->config, options, error)))
         return false;
     FlRenderOptions complete = c->options;
     fl_config_complete(c->config, &complete);
     FlCaller silent = fl_caller_of(&complete);
     silent.warning = NULL, silent.note = NULL; // the renders repeat them
-    if (!name_sheet(c, &complete, error) ||
+    if (!name_files(c, &complete, error) ||
         !(c->drawing = fl_drawing_from_options(&complete, c->config, &silent, error)) ||
-        !fl_guard_pictures(c->drawing, c->config, &complete, c->path, error))
+        !fl_guard_pictures(c->drawing, c->config, &complete, c->path, error) ||
+        (c->page && !fl_guard_pictures(c->drawing, c->config, &complete, c->page, error)))
         return false;
     const int width = fl_drawing_width(c->drawing), height = fl_drawing_height(c->drawing);
     const double scale = MIN(1, (double)SHOWN_PX / MAX(width, height));
@@ -214,6 +227,41 @@ static bool paint(Comparison *c, const Variant *variant, int row, GError **error
     return true;
 }
 
+/* Appends a line with the caller's settings, which hold for all rows. */
+static void append_settings(GString *page, const FlRenderOptions *options)
+{
+    for (size_t k = 0; k < options->n_settings; k++) {
+        g_autofree char *text = g_markup_printf_escaped(
+            " <code>--%s %s</code>", options->settings[k].name, options->settings[k].value);
+        g_string_append(page, text);
+    }
+}
+
+/* The page beside the sheet: what each row is. */
+static bool write_page(const Comparison *c, const Variant *variants, int n, GError **error)
+{
+    g_autofree char *sheet = g_path_get_basename(c->path);
+    g_autofree char *name = g_markup_escape_text(fl_drawing_name(c->drawing), -1);
+    g_autofree char *picture = g_markup_escape_text(sheet, -1);
+    g_autoptr(GString) page = g_string_new(NULL);
+    g_string_printf(page,
+                    "<!doctype html>\n<meta charset=\"utf-8\">\n<title>%s, by %d methods</title>\n"
+                    "<h1>%s, by %d methods</h1>\n<p>%d frames; the same for all rows:",
+                    name, n, name, n, c->n_frames);
+    append_settings(page, &c->options);
+    g_string_append_printf(page, "</p>\n<img src=\"%s\" alt=\"a row for each method\">\n<dl>\n",
+                           picture);
+    for (int k = 0; k < n; k++)
+        g_string_append_printf(page, "<dt><b>%s</b></dt><dd>%s</dd>\n", variants[k].name,
+                               variants[k].says);
+    g_string_append(page, "</dl>\n");
+    g_auto(FlAtomicFile) file = {0};
+    if (!fl_atomic_open(&file, c->page, c->options.overwrite == FL_OVERWRITE_YES, error))
+        return false;
+    (void)fwrite(page->str, 1, page->len, file.stream); // a full disk fails the commit
+    return fl_atomic_commit(&file, error);
+}
+
 static bool compare(const Kind *kind, const FlRenderOptions *given, const Variant *variants, int n,
                     GError **error)
 {
@@ -225,7 +273,8 @@ static bool compare(const Kind *kind, const FlRenderOptions *given, const Varian
     for (int k = 0; k < n; k++)
         if (!paint(&c, &variants[k], k + 1, error))
             return false;
-    if (!fl_contact_sheet_save(&c.contact, c.path, options.overwrite == FL_OVERWRITE_YES, error))
+    if (!fl_contact_sheet_save(&c.contact, c.path, options.overwrite == FL_OVERWRITE_YES, error) ||
+        (kind->has_page && !write_page(&c, variants, n, error)))
         return false;
     fl_note(&c.caller, "%d %s%s: %s", n, kind->noun, n == 1 ? "" : "s", c.path);
     return true;
@@ -258,7 +307,7 @@ bool fl_compare_styles(const FlRenderOptions *options, const char *const *styles
         if (!path)
             return false;
         g_ptr_array_add(names, style_row_name(styles[k], path, entries));
-        variants[k] = (Variant){names->pdata[k], 1, {{.name = "style", .value = styles[k]}}};
+        variants[k] = (Variant){names->pdata[k], "", 1, {{.name = "style", .value = styles[k]}}};
     }
     return compare(&styles_kind, options, variants, n, error);
 }
@@ -266,22 +315,35 @@ bool fl_compare_styles(const FlRenderOptions *options, const char *const *styles
 /* ---- methods --------------------------------------------------------------------------------- */
 
 #define PRESET(word)                                                                               \
+    1,                                                                                             \
     {                                                                                              \
-        word, 1,                                                                                   \
         {                                                                                          \
-            {                                                                                      \
-                .name = "preset", .value = word                                                    \
-            }                                                                                      \
+            .name = "preset", .value = word                                                        \
         }                                                                                          \
     }
 
 static const Variant methods[] = {
-    PRESET("default"),
-    PRESET("fluidymation"),
-    PRESET("thesis"),
-    PRESET("lazyfluids"),
-    PRESET("lazyfluids-steady"),
+    {"default",
+     "Patches of the recording, which follow its time and ride on the drawing's own motion.",
+     PRESET("default")},
+    {"fluidymation",
+     "Fluidymation, 2021, table 1: motion from the masks; the recording's frames are chosen by how "
+     "far contours move.",
+     PRESET("fluidymation")},
+    {"thesis",
+     "The thesis behind it, section 4.5: the same from the first 50 frames of the recording.",
+     PRESET("thesis")},
+    {"lazyfluids",
+     "LazyFluids, 2015, section 5: motion from the masks carries the last picture; every patch is "
+     "used equally often; the recording goes in step with the film and begins again after its end.",
+     PRESET("lazyfluids")},
+    {"lazyfluids-steady",
+     "The same with the drawing's own motion, a firmer hold on the last picture and a sharper "
+     "vote.",
+     PRESET("lazyfluids-steady")},
     {"transport",
+     "Transport: each region moves its own ink until it looks like the style, Pools unless another "
+     "one is given, and keeps its amount.",
      2,
      {{.name = "engine", .value = "transport"}, {.name = "style", .value = "pools"}}},
 };
