@@ -126,7 +126,7 @@ result $? 'a section that matches no region is a warning, with some frames of th
     [ "$(grep -c '/01: one frame is used: its paint does not flow' err)" = 1 ] &&
     "$program" whole -s 15 --dry-run >out 2>err && ! grep -q 'does not flow' err
 result $? 'a style of one frame is a warning, unless a fluid moves its paint'
-"$program" whole -s 01 --dry-run >out 2>err && [ ! -d fluidy ] &&
+"$program" whole -s 1 --dry-run >out 2>err && [ ! -d fluidy ] &&
     grep -q 'would paint 3 frames of 64x48 pixels, 1 region: fluidy/w_%04d.png' err
 result $? '--dry-run says what would be painted'
 grep -qE 'would take about 0:00:0[0-9], 0\.[0-9]+ seconds a frame' err

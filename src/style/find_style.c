@@ -117,11 +117,14 @@ GPtrArray *fl_style_list(void)
     return entries;
 }
 
-/* Returns: true if a typed word is a style's title or its folder's name, in any case. */
+/* Returns: true if a typed word is a style's title or its folder's name, in any case, or its number
+ * without the leading zero. */
 static bool is_meant(const FlStyleEntry *entry, const char *word)
 {
-    return !entry->hidden && ((entry->title && fl_edit_distance(word, entry->title) == 0) ||
-                              fl_edit_distance(word, entry->name) == 0);
+    const char *number = entry->name + (entry->name[0] == '0');
+    return !entry->hidden &&
+           ((entry->title && fl_edit_distance(word, entry->title) == 0) ||
+            fl_edit_distance(word, entry->name) == 0 || g_str_equal(word, number));
 }
 
 static bool contains(const char *name, const char *word)
