@@ -102,7 +102,7 @@ static void draw_cells(const FlPaperPlace *place, FlRect part, float *grid)
         }
 }
 
-static void centre(FlPaperSpread as_drawn, float *values, size_t n)
+void fl_paper_centre(FlPaperSpread as_drawn, float *values, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         values[i] = (values[i] - as_drawn.mean) / as_drawn.dev;
@@ -123,7 +123,7 @@ void fl_paper_fibres(const FlPaperPlace *place, FlRect box, float *fibres)
             continue;
         float *grid = fibres + (size_t)(y0 - box.y) * (size_t)box.width;
         draw_cells(place, (FlRect){box.x, y0, box.width, y1 - y0}, grid);
-        centre(place->fibre, grid, (size_t)(y1 - y0) * (size_t)box.width);
+        fl_paper_centre(place->fibre, grid, (size_t)(y1 - y0) * (size_t)box.width);
     }
 }
 
@@ -205,7 +205,7 @@ static void fill_row(const FlPaperPlace *place, FlRect box, int y, const float *
             at.x[i] = (float)(box.x + x + i) * px, at.y[i] = (float)(box.y + y) * px;
         find_surface(place, &at, fibres + x, height + x);
         add_mould(place, &at, height + x);
-        centre(place->height, height + x, (size_t)at.n);
+        fl_paper_centre(place->height, height + x, (size_t)at.n);
     }
 }
 

@@ -40,6 +40,9 @@ typedef struct FlPaperSpread {
     float mean, dev;
 } FlPaperSpread;
 
+/** Gives n values of a sheet mean 0 and deviation 1. */
+void fl_paper_centre(FlPaperSpread as_drawn, float *values, size_t n);
+
 /** A sheet: the same seed and scale are the same surface, however much of it is asked for. */
 typedef struct FlPaperPlace {
     const FlPaperGrain *grain;

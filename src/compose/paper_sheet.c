@@ -105,10 +105,10 @@ static bool find_spreads(Surface *surface, GError **error)
     if (made) {
         fl_paper_fibres(&patch.place, patch.box, patch.fibres);
         patch.place.fibre = spread_of(patch.fibres, n);
-        fl_paper_fibres(&patch.place, patch.box, patch.fibres);
+        fl_paper_centre(patch.place.fibre, patch.fibres, n);
         fl_paper_height(&patch.place, patch.box, patch.fibres, patch.height);
         patch.place.height = spread_of(patch.height, n);
-        fl_paper_height(&patch.place, patch.box, patch.fibres, patch.height);
+        fl_paper_centre(patch.place.height, patch.height, n);
         made = find_smooth(&patch, error);
     }
     if (made) {
