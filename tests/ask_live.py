@@ -2,7 +2,7 @@
 """Asks the server of --serve what it must not answer; speaks lines of "ok - " and "not ok - ".
 
 usage: ask_live.py ADDRESS [flood|keyed]
-keyed: the program was given --style 'ink@1 ./ink@4~2'.
+keyed: the program was given --style 'ink@1 ./ink@4~2' and a config, which is saved.
 flood: opens more connections than the server has descriptors for, and drops bad.json and good.lottie, nothing else."""
 import http.client, json, os, socket, struct, sys, time, urllib.parse
 
@@ -147,6 +147,14 @@ page = Page()
 if "keyed" in sys.argv:
     ink = os.path.realpath("ink")
     tell("paths of keys are those of any folder", f"style = {ink}@1 {ink}@4~2\n" in page.state()["config"])
+    page.say("choose", "defaults", "tint", "#123456")
+    page.say("save", 1)
+    page.until(lambda m: isinstance(m, dict) and "saved" in m)
+    page.say("step", -1)
+    page.state()
+    with open("film/w_0001.svg", "a") as drawing:
+        drawing.write("\n")
+    tell("what was saved is taken back for good", "tint" not in page.state()["config"])
     sys.exit()
 tell("the page is there", ask("GET", root)[0] == 200 and "inspect" not in ask("GET", root)[1])
 tell("its address has a secret", ask("GET", "/")[0] == 404 and ask("GET", "/0000/")[0] == 404 and len(root) > 30)

@@ -93,7 +93,8 @@ result $? 'the server writes no outputs and does not change the config'
 ends INT
 result $? 'SIGINT ends it with status 0, without leftovers'
 
-serves -s 'ink@1 ./ink@4~2' --serve
+echo '[project]' >keyed.conf
+serves -s 'ink@1 ./ink@4~2' -c keyed.conf --serve
 visit ask_live.py "$address" keyed
 ends INT
 

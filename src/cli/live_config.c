@@ -12,6 +12,7 @@ struct FlLiveConfig {
     const FlArgs *args;
     char *path;
     char *base;         // the file with the options of the command line
+    char *saved;        // the file, if it was saved: base with the choices of that time
     GPtrArray *choices; // GStrv: section, key and value, in the order in which they were made
     guint n;            // of them, which hold; those after them were taken back
     guint kept;         // of them, which are known to be good
@@ -136,13 +137,17 @@ const char *fl_live_config_path(const FlLiveConfig *config)
     return config->path;
 }
 
-bool fl_live_config_save(const FlLiveConfig *config, bool replace, GError **error)
+bool fl_live_config_save(FlLiveConfig *config, bool replace, GError **error)
 {
     if (!replace && g_file_test(config->path, G_FILE_TEST_EXISTS)) {
         g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s is there already", config->path);
         return false;
     }
-    return g_file_set_contents(config->path, config->text, -1, error);
+    if (!g_file_set_contents(config->path, config->text, -1, error))
+        return false;
+    g_free(config->saved);
+    config->saved = g_strdup(config->text);
+    return true;
 }
 
 /* ---- the file and the command line ---------------------------------------------------------- */
@@ -190,6 +195,8 @@ static bool read_base(FlLiveConfig *config, GError **error)
     }
     if (given_config(config) && !g_file_get_contents(path, &text, NULL, error))
         return false;
+    if (text && g_strcmp0(text, config->saved) == 0)
+        return true; // what it has of the choices can still be taken back
     if (!text)
         text = g_strdup("# How the regions are painted; see fluidy-svg.conf(5).\n\n[project]\n"
                         "version = 1\n");
@@ -243,6 +250,7 @@ void fl_live_config_free(FlLiveConfig *config)
     g_ptr_array_unref(config->choices);
     g_free(config->path);
     g_free(config->base);
+    g_free(config->saved);
     g_free(config->text);
     g_free(config);
 }

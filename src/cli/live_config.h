@@ -32,7 +32,7 @@ const char *fl_live_config_path(const FlLiveConfig *config);
 
 /** Writes the text there. replace: an existing file is replaced. Returns: false with
  * FL_ERROR_EXISTS or an error of the file. */
-bool fl_live_config_save(const FlLiveConfig *config, bool replace, GError **error);
+bool fl_live_config_save(FlLiveConfig *config, bool replace, GError **error);
 
 /** The choices so far are good ones. */
 void fl_live_config_keep(FlLiveConfig *config);
