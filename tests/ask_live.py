@@ -53,9 +53,9 @@ class Page:
         while self.file.readline() != b"\r\n":
             pass
 
-    def say(self, *parts):
-        text = "\n".join(map(str, parts)).encode()
-        self.connection.sendall(bytes([0x81, 0x80 | len(text)]) + b"\0\0\0\0" + text)
+    def say(self, *parts, kind=1):
+        text = "\n".join(map(str, parts)).encode(errors="surrogateescape")
+        self.connection.sendall(bytes([0x80 | kind, 0x80 | len(text)]) + b"\0\0\0\0" + text)
 
     def message(self):
         """A state or another message, or the six numbers of a picture."""
@@ -168,6 +168,9 @@ tell("an output cannot be chosen", page.choose("project", "output", "/tmp/x"))
 tell("nor an option of the command line alone", page.choose("project", "dump", "/tmp/x"))
 tell("nor a key that does not exist", page.choose(key="carri"))
 tell("nor a value of two lines", page.choose(value="1\noutput = x") and page.choose("region a]\n[project"))
+page.say("choose", "defaults", "style", "./\udcff", kind=2)
+words = page.until(lambda m: isinstance(m, dict) and "refused" in m)["refused"]
+tell("nor anything by bytes that are no text", words.startswith("expected paint"))
 tell("nor a section of two", page.choose("region a]\r[project"))
 tell("a large body is refused", ask("POST", root, own, "x" * 100000)[0] == 413)
 tell("a value of the wrong kind is refused with its words", "much" in page.choose(value="much"))

@@ -293,8 +293,8 @@ static void take_save(Live *live, SoupWebsocketConnection *page, char **part)
                 error ? error->message : fl_live_config_path(live->config));
 }
 
-/* Each part of a message is a line. */
-static void on_text(SoupWebsocketConnection *page, int type, GBytes *message, void *data)
+/* Each part of a message is a line. The library has checked that text is UTF-8. */
+static void on_message(SoupWebsocketConnection *page, int type, GBytes *message, void *data)
 {
     static const struct {
         const char *name;
@@ -309,7 +309,8 @@ static void on_text(SoupWebsocketConnection *page, int type, GBytes *message, vo
     g_autofree char *text = g_strndup(letters ? letters : "", bytes);
     g_auto(GStrv) part = g_strsplit(text, "\n", -1);
     for (size_t k = 0; k < G_N_ELEMENTS(known); k++)
-        if (g_strv_length(part) == known[k].parts && strcmp(part[0], known[k].name) == 0) {
+        if (type == SOUP_WEBSOCKET_DATA_TEXT && g_strv_length(part) == known[k].parts &&
+            strcmp(part[0], known[k].name) == 0) {
             known[k].take(data, page, part);
             return;
         }
@@ -433,7 +434,7 @@ static void on_page(SoupServer *server, SoupServerMessage *message, const char *
     g_autofree char *state = state_of(live), *controls = fl_live_config_options();
     soup_websocket_connection_set_keepalive_interval(page, PING_S);
     g_ptr_array_add(live->pages, g_object_ref(page));
-    g_signal_connect(page, "message", G_CALLBACK(on_text), live);
+    g_signal_connect(page, "message", G_CALLBACK(on_message), live);
     g_signal_connect(page, "closed", G_CALLBACK(on_closed), live);
     say_to(page, controls);
     say_to(page, state);
