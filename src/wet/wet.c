@@ -46,7 +46,6 @@ FlWet *fl_wet_new(const FlShapes *shapes, const FlWetOptions *options, FlWet *be
         !fl_wet_make_markers(wet, error))
         return NULL;
     wet->ink = g_new(float, 3 * fl_drawing_regions(shapes->drawing) + 1);
-    fl_wet_take_fills(wet);
     fl_wet_begin(wet, FL_WET_FRAMES);
     return g_steal_pointer(&wet);
 }
@@ -58,6 +57,7 @@ void fl_wet_begin(FlWet *wet, int known)
     wet->camera_x = wet->camera_y = 0;
     fl_wet_sheet_begin(&wet->sheet);
     fl_laid_begin(&wet->laid);
+    fl_wet_take_fills(wet);
     for (int m = 0; m < wet->n_markers; m++) {
         FlMarker *marker = &wet->marker[m];
         fl_moving_edge_clear(&marker->before);

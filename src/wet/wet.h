@@ -22,8 +22,8 @@ FlWet *fl_wet_new(const FlShapes *shapes, const FlWetOptions *options, FlWet *be
                   FlWetMotion motion, void *data, GError **error);
 void fl_wet_free(FlWet *wet); // NULL is fine
 
-/** Goes back to before any frame. known: frames before the first one that it is known from,
- * FL_WET_FRAMES or, in drafts, less. */
+/** Goes back to before any frame, and forgets what it learned. known: frames before the first one
+ * that it is known from, FL_WET_FRAMES or, in drafts, less. */
 void fl_wet_begin(FlWet *wet, int known);
 
 /**
