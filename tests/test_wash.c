@@ -445,6 +445,33 @@ static float tone_along_pass(float pass, bool crisp)
     return sum;
 }
 
+/* The paint of a large cut-out reaches far beyond its shape. */
+static void beside_a_wash_all_is_as_at_its_rim(void)
+{
+    enum { N = 3000, STEP = 5 };
+    float one[4] = {1, 1, 1, 1}, zero[4] = {0};
+    FlWash wash = {.style = {.wash = 1},
+                   .key = 1,
+                   .brush_px = 80,
+                   .box = {N - 60, 20, STEP, STEP},
+                   .step = STEP,
+                   .width = 2,
+                   .height = 2};
+    for (int k = 0; k < FL_WASH_PLANES; k++)
+        wash.plane[k] = k == FL_WASH_HUE ? one : zero;
+    int16_t amounts[N];
+    int8_t play[N];
+    FlColumns row = {0, N};
+    const FlArea area = {{3, 7, N, 1}, &row};
+    for (int x = 0; x < N; x++)
+        amounts[x] = 1000, play[x] = 99;
+    fl_wash_lay(&wash, 0, &area, amounts, play);
+    for (int x = 0; x < N; x++) {
+        g_assert_cmpint(play[x], ==, FL_PLAY_ONE);
+        g_assert_cmpint(amounts[x], ==, 1000);
+    }
+}
+
 /* Where the edge of a pass grows wide, the tone beside it hardly changes: a crisp stretch is no
  * patch with ends. */
 static void edges_of_passes_are_lost_in_their_place(void)
@@ -958,6 +985,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/it-rides-with-its-figure", it_rides_with_its_figure);
     g_test_add_func("/wash/a-limb-carries-its-own", a_limb_carries_its_own);
     g_test_add_func("/wash/all-of-a-limb-has-its-wash", all_of_a_limb_has_its_wash);
+    g_test_add_func("/wash/beside-a-wash-all-is-as-at-its-rim", beside_a_wash_all_is_as_at_its_rim);
     g_test_add_func("/wash/edges-of-passes-are-lost-in-their-place",
                     edges_of_passes_are_lost_in_their_place);
     g_test_add_func("/wash/still-figures-do-not-change", still_figures_do_not_change);

@@ -281,12 +281,12 @@ static void lay_row(const Brush *brush, const FlArea *area, int y, int16_t *amou
 {
     const FlWash *wash = brush->wash;
     const FlColumns span = fl_area_row(area, y);
-    const int step = wash->step, beside = area->box.x - wash->box.x + 64 * step;
+    const int step = wash->step, across = area->box.x; // points are on a grid of the page
     Run run;
     for (int x = span.first; x < span.last;) {
-        const int point = (x + beside) / step;
-        const int left = point * step - beside; // the px of that point
-        run.first = point - 64;
+        const int point = (x + across) / step;
+        const int left = point * step - across; // the px of that point
+        run.first = point - wash->box.x / step;
         run.n = MIN((span.last - left + step - 1) / step, RUN / step);
         const int end = MIN(left + run.n * step, span.last);
         exchange(&run, step, left, x, end, amounts, NULL);
