@@ -163,6 +163,26 @@ static void pigments_play_when_asked_to(void)
     }
 }
 
+static double middle_of_floating(const FlSheet *sheet)
+{
+    double sum = 0, moment = 0;
+    for (int i = 0; i < SIDE * SIDE; i++)
+        sum += (double)sheet->floating[0][i], moment += (double)sheet->floating[0][i] * (i % SIDE);
+    return moment / sum;
+}
+
+static void fast_water_moves_pigment_by_its_velocity(void)
+{
+    g_autoptr(FlSheet) sheet = painted_sheet();
+    const double before = pigment_of(sheet), middle = middle_of_floating(sheet);
+    for (int j = 0; j < SIDE; j++)
+        for (int i = 1; i < SIDE; i++)
+            sheet->u[j * (SIDE + 1) + i] = 2.5f, sheet->v[i * SIDE + j] = -1.2f;
+    fl_move_pigment(sheet);
+    expect_pigment(sheet, before);
+    g_assert_cmpfloat_with_epsilon(middle_of_floating(sheet), middle + 2.5, 1e-3);
+}
+
 static void water_in_the_paper_conserves_pigment_and_spreads(void)
 {
     g_autoptr(FlSheet) sheet = painted_sheet();
@@ -517,6 +537,7 @@ int main(int argc, char **argv)
     TEST(a_dry_brush_skips_the_hollows);
     TEST(bristles_draw_lines_along_the_stroke);
     TEST(pigments_play_when_asked_to);
+    TEST(fast_water_moves_pigment_by_its_velocity);
     TEST(water_in_the_paper_conserves_pigment_and_spreads);
     TEST(water_never_exceeds_the_capacity_of_the_paper);
     TEST(a_growing_puddle_opens_no_streak_along_its_line);
