@@ -149,6 +149,12 @@ svg x.svg "<mask id='m'><rect width='40' height='30' fill='#fff'/></mask><g mask
 )</g>"
 look && grep -q 1334 out && cpu_seconds=30 look # the others are outside of it
 result $? 'and so are 2000 in a group with a mask'
+svg x.svg "$(for i in {1..8}; do
+    echo "<pattern id='p$i' width='1' height='1' patternContentUnits='objectBoundingBox'>$(
+        printf "<rect width='.1' height='.1' transform='rotate(9)' fill='url(#p$((i + 1)))'/>%.0s" {1..10})</pattern>"
+done)$shape"
+look && grep -q aa3311 out
+result $? 'patterns that each show the next one ten times are copied within bounds'
 svg x.svg "<filter id='f' color-interpolation-filters='sRGB'><feBlend mode='multiply'
     in2='BackgroundImage'/></filter>$shape<g filter='url(#f)'><circle r='20' fill='#4a9'/></g>"
 look && [ ! -s err ] && grep -q 44aa99 out

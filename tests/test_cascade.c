@@ -428,6 +428,9 @@ static void gaps_of_librsvg_are_filled(void)
     assert_value("<linearGradient id='g' gradientUnits='userSpaceOnUse'/>"
                  "<rect id='a' width='4' height='2' fill='url(#g)' transform='rotate(9)'/>",
                  "fill", "url(#g)");
+    assert_value("<filter id='f'><feBlend in2='BackgroundImage' mode='screen'/></filter>"
+                 "<rect id='a' width='4' height='2' filter='url(#f)' transform='rotate(9)'/>",
+                 "mix-blend-mode", "screen");
     assert_value("<path id='a' fill='rgb(1, 2, 3) /* {\"name\":\"Ink\"} */'/>", "fill",
                  "rgb(1, 2, 3)");
     assert_value("<filter><feOffset id='a' in='SourceAlpha'/><feColorMatrix/></filter>", "in",

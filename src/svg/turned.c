@@ -4,12 +4,22 @@
 #include <string.h>
 
 #define MOST_REFERENCES 16 // from gradient to gradient
+#define MOST_COPIED 100000 // elements; shapes beyond are as librsvg draws them
 
 typedef struct Turned {
     GHashTable *ids; // id -> xmlNode, the first of that id
     FlCssUnits units;
-    int n_made; // names
+    int n_made;   // names
+    int n_copied; // elements in filters and patterns
 } Turned;
+
+static int count_elements(const xmlNode *node)
+{
+    int n = 0;
+    FL_EACH_ELEMENT (child, node)
+        n += 1 + count_elements(child);
+    return n;
+}
 
 /* ---- blurs ----------------------------------------------------------------------------------- */
 
@@ -40,18 +50,23 @@ static void turn_blur(xmlNode *step, const FlAffine *m)
 static void mend_blur(Turned *t, xmlNode *node, const FlAffine *map)
 {
     static const char *const filters[] = {"filter", NULL};
+    static const char *const steps[] = {"feGaussianBlur", "feDropShadow", NULL};
     g_autofree char *value = fl_property(node, "filter");
     xmlNode *filter = fl_referred_by(value, filters, t->ids);
     g_autofree char *units = filter ? fl_property(filter, "primitiveUnits") : NULL;
-    if (!filter || (units && strcmp(units, "objectBoundingBox") == 0))
+    bool blurs = false;
+    FL_EACH_ELEMENT (step, filter)
+        blurs |= fl_is_one_of(step, steps);
+    if (!blurs || (units && strcmp(units, "objectBoundingBox") == 0))
         return;
     g_autofree char *id = g_strdup_printf("fl-turned-%d", t->n_made++);
     g_autofree char *declaration = g_strdup_printf("filter:url(#%s)", id);
     xmlNode *turned = xmlAddNextSibling(filter, xmlDocCopyNode(filter, filter->doc, 1));
     fl_set_attribute(turned, "id", id);
     fl_declare(node, declaration);
+    t->n_copied += count_elements(turned);
     FL_EACH_ELEMENT (step, turned)
-        if (fl_is(step, "feGaussianBlur") || fl_is(step, "feDropShadow"))
+        if (fl_is_one_of(step, steps))
             turn_blur(step, map);
 }
 
@@ -162,6 +177,7 @@ static void mend_paint(Turned *t, xmlNode *node, const char *property)
     fl_set_attribute(own, "href", href);
     (pattern ? place_pattern : place_gradient)(t, own, server, box);
     xmlAddNextSibling(server, own);
+    t->n_copied += count_elements(own);
     fl_declare(node, declaration);
 }
 
@@ -173,7 +189,7 @@ static void visit(Turned *t, xmlNode *node, const FlAffine *around)
                                          "line", "polyline", "polygon", NULL};
     const FlAffine own = fl_affine_of(node), map = fl_affine_multiply(around, &own);
     const bool upright = (map.xy == 0 && map.yx == 0) || (map.xx == 0 && map.yy == 0);
-    if (!upright && map.xx * map.yy != map.xy * map.yx) {
+    if (!upright && map.xx * map.yy != map.xy * map.yx && t->n_copied < MOST_COPIED) {
         mend_blur(t, node, &map);
         if (fl_is_one_of(node, shapes)) {
             mend_paint(t, node, "fill");
