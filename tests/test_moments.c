@@ -219,6 +219,9 @@ static void css_has_its_values(void)
     assert_at(CSS("@keyframes k{from{filter:drop-shadow(0 0 2px #ff0000)}to{filter:drop-shadow(4px "
                   "0 0 #0000ff) contrast(3)}}#a{animation:k 1s linear}"),
               .5, "filter", "drop-shadow(2px 0 1px rgba(128, 0, 128, 1)) url(#fl-filter-0)");
+    assert_at("<style>@keyframes k{to{transform:scale(2)}}#a{animation:k 1s linear}</style>"
+              "<rect id='a' transform='a)'/>",
+              .75, "transform", "matrix(2, 0, 0, 2, 0, 0)"); // no value is between
 }
 
 static FlFilmLength length_of(const char *content)

@@ -274,13 +274,12 @@ double fl_value_distance(const char *a, const char *b)
 
 /* ---- lists ----------------------------------------------------------------------------------- */
 
-/** The i-th word of a function or property `kind`, to be freed; of one that is missing, a word that
- * changes nothing in place of the other one. */
-static char *word_at(const char *kind, char **own, char **others, guint i)
+/** The i-th word of a function or property `kind` with n words, to be freed; of one that is
+ * missing, a word that changes nothing in place of the other one. */
+static char *word_at(const char *kind, char **own, guint n, char **others, guint i)
 {
     static const char *const whole[] = {"brightness", "contrast", "opacity",
                                         "saturate",   "scale",    NULL};
-    const guint n = g_strv_length(own);
     const char *other = n <= i ? others[i] : NULL;
     double number;
     if (n > i || (n == 1 && strcmp(kind, "scale") == 0)) // scale(x) is scale(x, x)
@@ -294,9 +293,10 @@ static char *word_at(const char *kind, char **own, char **others, guint i)
 static bool mix_words(GString *out, const char *kind, char **a, char **b, double p,
                       const char *separator)
 {
+    const guint na = g_strv_length(a), nb = g_strv_length(b);
     bool mixed = true;
-    for (guint i = 0; i < MAX(g_strv_length(a), g_strv_length(b)) && mixed; i++) {
-        g_autofree char *x = word_at(kind, a, b, i), *y = word_at(kind, b, a, i);
+    for (guint i = 0; i < MAX(na, nb) && mixed; i++) {
+        g_autofree char *x = word_at(kind, a, na, b, i), *y = word_at(kind, b, nb, a, i);
         g_autofree char *word = fl_interpolate(x, y, p);
         mixed = word != NULL;
         g_string_append_printf(out, "%s%s", i ? separator : "", mixed ? word : "");
@@ -320,12 +320,12 @@ static bool take_function(const char **s, char separator, char **name, char ***w
     const char *open = *s + fl_css_identifier(*s);
     const char *close = *open == '(' ? fl_css_find(open + 1, ")") : open;
     const bool end = !**s || strcmp(*s, "none") == 0;
-    g_autofree char *inside =
-        end || *close != ')' ? g_strdup("") : g_strndup(open + 1, (gsize)(close - open) - 1);
+    const bool whole = open > *s && close > open && *close == ')';
+    g_autofree char *inside = g_strndup(open + 1, whole ? (gsize)(close - open) - 1 : 0);
     *name = g_ascii_strdown(*s, end ? 0 : open - *s);
     *words = fl_css_split(inside, separator);
     *s = end ? *s + strlen(*s) : fl_css_space(*close ? close + 1 : close);
-    return end || (*open == '(' && *close == ')');
+    return end || whole;
 }
 
 char *fl_interpolate_functions(const char *a, const char *b, double p, char separator)

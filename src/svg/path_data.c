@@ -88,7 +88,8 @@ static void add_step(void *data, char command, const double *v)
         if (axis >= 0)
             end[axis] = number;
     }
-    memcpy(path->start, upper == 'M' ? end : path->start, sizeof end);
+    if (upper == 'M')
+        memcpy(path->start, end, sizeof end);
     memcpy(path->at, upper == 'Z' ? path->start : end, sizeof end);
     g_string_append_c(path->command, upper);
 }

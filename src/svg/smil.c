@@ -330,9 +330,10 @@ static bool is_replaced(const GPtrArray *order, guint i, double seconds)
     bool replaced = false;
     for (guint k = i + 1; k < order->len && !replaced; k++) {
         const FlAnimation *b = order->pdata[k];
+        if (b->target != a->target || !fl_is(b->node, "animateMotion"))
+            continue;
         g_autofree char *additive = fl_trimmed_attribute(b->node, "additive");
-        replaced = b->target == a->target && fl_is(b->node, "animateMotion") &&
-                   fl_interval_at(b, seconds) && g_strcmp0(additive, "sum") != 0;
+        replaced = fl_interval_at(b, seconds) && g_strcmp0(additive, "sum") != 0;
     }
     return replaced;
 }
