@@ -366,6 +366,36 @@ static void shapes_of_one_colour_meet_without_a_seam(void)
         g_assert_cmpint(mask[p], >=, 254);
 }
 
+/** Two shapes whose masks let half through at the middle, and two lines of half a pixel there. */
+static void soft_shapes_and_lines_lie_over_each_other(void)
+{
+    static const char *const films[] = {
+        "<linearGradient id=\"g\"><stop stop-color=\"#fff\"/><stop offset=\"1\"/></linearGradient>"
+        "<mask id=\"m\"><rect width=\"100\" height=\"100\" fill=\"url(#g)\"/></mask>"
+        "<rect width=\"100\" height=\"99\" fill=\"red\" mask=\"url(#m)\"/>"
+        "<rect width=\"100\" height=\"100\" fill=\"red\" mask=\"url(#m)\"/>",
+        "<g stroke=\"red\"><path d=\"M0 10H100\" stroke-width=\"4\"/>"
+        "<path d=\"M0 50.25H100\" stroke-width=\".5\"/><path d=\"M9 50.25H90\" "
+        "stroke-width=\".5\"/>"
+        "</g>"};
+    for (size_t k = 0; k < G_N_ELEMENTS(films); k++) {
+        g_autoptr(Scratch) folder = scratch_make();
+        g_free(scratch_svg(folder, "1.svg", films[k]));
+        const FlDrawingOptions options = {.strokes = FL_STROKES_PAINT};
+        g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+        g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, 0, NULL);
+        int most = 0;
+        for (int d = 0; d < draws->n; d++) {
+            const FlDraw *draw = &draws->draw[d];
+            const FlRect box = draw->area.box;
+            if (box.y <= 50 && box.y + box.height > 50)
+                most = MAX(most, draw->coverage[(50 - box.y) * box.width + 50 - box.x]);
+        }
+        g_assert_cmpint(most, >, 120);
+        g_assert_cmpint(most, <, 210);
+    }
+}
+
 /** The number of pixels that are wholly inside the only shape. */
 static int inside_of(const char *shape)
 {
@@ -803,6 +833,7 @@ int main(int argc, char **argv)
          rings_of_two_colours_are_regions_of_their_own);
     TEST("a-mask-is-the-whole-shape", a_mask_is_the_whole_shape);
     TEST("shapes-of-one-colour-meet-without-a-seam", shapes_of_one_colour_meet_without_a_seam);
+    TEST("soft-shapes-and-lines-lie-over-each-other", soft_shapes_and_lines_lie_over_each_other);
     TEST("what-fades-is-inside-as-far-as-it-is-seen", what_fades_is_inside_as_far_as_it_is_seen);
     TEST("hairlines-are-drawn-even-where-strokes-are-painted",
          hairlines_are_drawn_even_where_strokes_are_painted);

@@ -125,17 +125,27 @@ static FlRect draw_box(const Stage *stage, const Draw *draw)
     return all;
 }
 
-static bool draw_step(const Stage *stage, const FlDrawStep *step, cairo_surface_t *surface,
-                      GError **error)
+/** The leaf or unit of a step; NULL with FL_ERROR_CHANGED. */
+static const FlLeaf *leaf_of(const Stage *stage, const FlDrawStep *step, GError **error)
 {
     const FlLeaves *leaves = fl_svg_leaves(stage->svg);
     const GArray *list = step->leaf >= 0 ? leaves->leaf : leaves->unit;
     const guint index = (guint)(step->leaf >= 0 ? step->leaf : -1 - step->leaf);
-    if (index >= list->len)
-        return fl_fail(error, FL_ERROR_CHANGED, "%s: changed while it was being painted",
-                       stage->frame->file);
-    const FlLeaf *leaf = step->leaf >= 0 ? &g_array_index(list, FlLeaf, index)
-                                         : &g_array_index(list, FlGroupUnit, index).leaf;
+    if (index >= list->len) {
+        fl_fail(error, FL_ERROR_CHANGED, "%s: changed while it was being painted",
+                stage->frame->file);
+        return NULL;
+    }
+    return step->leaf >= 0 ? &g_array_index(list, FlLeaf, index)
+                           : &g_array_index(list, FlGroupUnit, index).leaf;
+}
+
+static bool draw_step(const Stage *stage, const FlDrawStep *step, cairo_surface_t *surface,
+                      GError **error)
+{
+    const FlLeaf *leaf = leaf_of(stage, step, error);
+    if (!leaf)
+        return false;
     const FlRect box = step_box(stage, step);
     cairo_t *cr = cairo_create(surface);
     cairo_rectangle(cr, box.x, box.y, box.width, box.height);
@@ -149,13 +159,19 @@ static bool draw_step(const Stage *stage, const FlDrawStep *step, cairo_surface_
 
 /* ---- by hand --------------------------------------------------------------------------------- */
 
+/** True if a step has no part of a stroke. */
+static bool is_fill(const FlDrawStep *step)
+{
+    return step->width == 0 && step->part != FL_PART_STROKE;
+}
+
 /** True if a hand draws a step: a line, or a flat opaque shape, which is a detail if it is small.
  */
 static bool is_by_hand(const FlDrawStep *step, const FlHand *hand)
 {
     const bool line = step->width > 0;
-    const bool shape = step->width == 0 && step->part != FL_PART_STROKE && step->flat &&
-                       step->drawn == 255 && step->blend_mode == FL_BLEND_MODE_OVER;
+    const bool shape =
+        is_fill(step) && step->flat && step->drawn == 255 && step->blend_mode == FL_BLEND_MODE_OVER;
     return step->leaf >= 0 && (line || shape) && fl_line_kind(hand->of_region[step->region].line);
 }
 
@@ -265,8 +281,17 @@ static bool add_by_hand(const Stage *stage, int i, const uint8_t solid[256], con
     return true;
 }
 
-/** Adds one flat step to a coverage, dividing by its opacity. Steps of one paint that share an edge
- * fill its pixels together, without a seam. */
+/** True if a step covers pixels in part only at its edge: a fill without a mask. */
+static bool has_edges(const Stage *stage, const FlDrawStep *step)
+{
+    const FlLeaf *leaf = leaf_of(stage, step, NULL);
+    const xmlNode *node =
+        leaf ? g_hash_table_lookup(fl_svg_leaves(stage->svg)->ids, leaf->layer) : NULL;
+    return is_fill(step) && node && !fl_is_set(node, "mask");
+}
+
+/** Adds one flat step to a coverage, dividing by its opacity. Fills of one paint that share an edge
+ * fill its pixels together, without a seam; lines and soft masks lie over each other. */
 static bool add_flat(const Stage *stage, int i, const Target *target, GError **error)
 {
     const FlDrawStep *step = &stage->frame->step[i];
@@ -275,6 +300,7 @@ static bool add_flat(const Stage *stage, int i, const Target *target, GError **e
     const FlRect box = step_box(stage, step);
     const int stride = cairo_image_surface_get_stride(stage->coverage);
     const unsigned char *drawn = cairo_image_surface_get_data(stage->coverage);
+    const bool joins = has_edges(stage, step);
     uint8_t solid[256];
     fill_solid(solid, step->drawn);
     for (int y = box.y; y < box.y + box.height; y++) {
@@ -282,7 +308,8 @@ static bool add_flat(const Stage *stage, int i, const Target *target, GError **e
         uint8_t *out = target->coverage + target_pixel(target, box.x, y);
         for (int x = 0; x < box.width; x++)
             if (in[x])
-                out[x] = (uint8_t)MIN(255, solid[in[x]] + out[x]);
+                out[x] = joins ? (uint8_t)MIN(255, solid[in[x]] + out[x])
+                               : fl_over(solid[in[x]], out[x]);
     }
     fl_surface_wipe(stage->coverage, box);
     return true;
