@@ -425,18 +425,13 @@ static void test_other_paint(void)
     scene_free(scene);
 }
 
-/* The red of a page where a blue coat has left, and there a limb below it, if any, a little later.
- */
-static double red_behind_coat(bool limb, const char *stain)
+/* The last of eight frames of a film, 96 px wide, painted without fronts. */
+static FlPicture *last_of(char *const *frames, const char *stain)
 {
     g_autoptr(Scratch) folder = scratch_make();
     for (int f = 1; f <= 8; f++) {
         g_autofree char *name = g_strdup_printf("d_%d.svg", f);
-        g_autofree char *shapes =
-            g_strdup_printf("<path d='M%d 20h5v60h-5z' fill='#a53' display='%s'/>"
-                            "<path d='M%d 15h30v70h-30z' fill='#23a'/>",
-                            f < 7 ? 27 : 90, limb ? "inline" : "none", 17 + 3 * f);
-        g_free(scratch_svg(folder, name, shapes));
+        g_free(scratch_svg(folder, name, frames[f - 1]));
     }
     g_autofree char *output = g_build_filename(folder, "d_%d.png", NULL);
     g_autofree char *style = g_build_filename(g_getenv("FLUIDY_FIXTURES"), "style-small", NULL);
@@ -456,12 +451,56 @@ static double red_behind_coat(bool limb, const char *stain)
     g_autofree char *last = g_build_filename(folder, "d_8.png", NULL);
     FlPicture *picture = fl_picture_read_png(last, &error);
     g_assert_no_error(error);
+    return picture;
+}
+
+/* The red of a page where a blue coat has left, and there a limb below it, if any, a little later.
+ */
+static double red_behind_coat(bool limb, const char *stain)
+{
+    g_auto(GStrv) frames = g_new0(char *, 9);
+    for (int f = 1; f <= 8; f++)
+        frames[f - 1] = g_strdup_printf("<path d='M%d 20h5v60h-5z' fill='#a53' display='%s'/>"
+                                        "<path d='M%d 15h30v70h-30z' fill='#23a'/>",
+                                        f < 7 ? 27 : 90, limb ? "inline" : "none", 17 + 3 * f);
+    FlPicture *picture = last_of(frames, stain);
     double sum = 0;
     for (int y = 28; y < 68; y++)
         for (int x = 27; x < 31; x++)
             sum += picture->rgba[4 * (y * 96 + x)];
     fl_picture_free(picture);
     return sum / (4 * 40);
+}
+
+/* The mean of blue less red, 8 px around a place. */
+static double blue_at(const FlPicture *picture, int x, int y)
+{
+    double sum = 0;
+    for (int k = 0; k < 81; k++) {
+        const uint8_t *rgba =
+            picture->rgba + 4 * ((y - 4 + k / 9) * picture->width + x - 4 + k % 9);
+        sum += rgba[2] - rgba[0];
+    }
+    return sum / 81;
+}
+
+/* A stain at the top of the page turns with the ground, clockwise by 32 degrees. */
+static void test_camera(void)
+{
+    g_auto(GStrv) frames = g_new0(char *, 9);
+    for (int f = 1; f <= 8; f++)
+        frames[f - 1] = g_strdup_printf(
+            "<g transform='rotate(%d 48 48)'><path d='M-99-99h300v300h-300z' fill='#eee'/>"
+            "<path d='M%d 14h14v14h-14z' fill='#23a'/></g>",
+            8 * MAX(f - 4, 0), f < 5 ? 30 + 6 * f : 900);
+    FlPicture *picture = last_of(frames, "1");
+    const double turned = blue_at(picture, 60, 24), left = blue_at(picture, 45, 21);
+    const double back = blue_at(picture, 31, 27);
+    g_test_message("blue %.1f where it has turned to, %.1f where it was, %.1f the other way",
+                   turned, left, back);
+    g_assert_cmpfloat(turned, >, left + 3);
+    g_assert_cmpfloat(turned, >, back + 3);
+    fl_picture_free(picture);
 }
 
 /* A limb that leaves shows no hole in the stain of a coat that was above it. */
@@ -703,6 +742,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/what-grows-keeps-its-colour", test_grown);
     g_test_add_func("/wet/marks-fade-until-none-is-left", test_dries);
     g_test_add_func("/wet/marks-and-grain-move-with-the-paper", test_moved);
+    g_test_add_func("/wet/a-stain-turns-with-the-ground", test_camera);
     g_test_add_func("/wet/the-paper-turns-with-the-camera", test_turned);
     return g_test_run();
 }
