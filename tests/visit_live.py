@@ -135,6 +135,13 @@ browser.ask('toggleAll(true), play(false), byId("mode").value = "alone", zoom()'
 browser.ask('byId("view").focus(), document.activeElement.blur(), show(0)')
 browser.key("ArrowRight")
 tell("a key steps", browser.ask("shown[state.at].number") == 3)
+browser.ask('byId("regions").rows[0].focus()')
+for key in "ArrowDown", "Enter", " ":
+    browser.key(key)
+tell("keys go down the list of regions, choose one and show its drawing",
+     browser.ask("state.region === film.regions[1].name && state.off.has(state.region)"))
+for key in " ", "Enter":
+    browser.key(key)
 browser.mouse(place('byId("pin")'))
 tell("a painting stays as A", browser.ask('byId("left").value') == "kept")
 for mode in "beside", "onion", "wipe":
