@@ -442,7 +442,8 @@ static void gaps_of_librsvg_are_filled(void)
                     "<linearGradient x2='0'><stop id='s' offset='.123'/><stop/></linearGradient>"
                     "<filter id='t'><feGaussianBlur stdDeviation='3'/></filter>"
                     "<g transform='rotate(45)'><path filter='url(#t)' transform='scale(2)'/></g>"
-                    "<linearGradient id='o' x2='50%'/><pattern id='q' width='.5' height='1' "
+                    "<s:linearGradient xmlns:s='http://www.w3.org/2000/svg' id='o' "
+                    "x2='50%'/><pattern id='q' width='.5' height='1' "
                     "patternContentUnits='objectBoundingBox'><path/></pattern>"
                     "<g fill='url(#o)'><rect x='3' width='8' height='2' transform='rotate(9)' "
                     "stroke='url(#q)'/><rect width='4' height='2'/></g>"
@@ -457,8 +458,10 @@ static void gaps_of_librsvg_are_filled(void)
     g_assert_nonnull(strstr(text, "href=\"#o\" gradientUnits=\"userSpaceOnUse\" "
                                   "gradientTransform=\"matrix(8, 0, 0, 2, 3, 0)\" x1=\"0\""));
     g_assert_nonnull(strstr(text, "x2=\"0.5\""));
-    g_assert_nonnull(strstr(text, "x=\"3\" y=\"0\" width=\"4\" height=\"2\" patternContentUnits="
-                                  "\"userSpaceOnUse\"><g transform=\"matrix(8, 0, 0, 2, 0, 0)\">"));
+    g_assert_nonnull(
+        strstr(text, "width=\"4\" height=\"2\" patternContentUnits=\"userSpaceOnUse\""));
+    g_assert_nonnull(strstr(text, "x=\"3\" y=\"0\"><g transform=\"matrix(8, 0, 0, 2, 0, 0)\">"));
+    g_assert_nonnull(strstr(text, "xmlns:s=\"http://www.w3.org/2000/svg\" id=\"fl-turned-1\""));
     g_assert_nonnull(strstr(text, "\"fill:url(#fl-turned-1);stroke:url(#fl-turned-2)\""));
     g_assert_null(strstr(text, "<stop id"));
     g_assert_nonnull(strstr(text, "width=\"7\" height=\"5\" data-fl-id=\"w\" overflow"));

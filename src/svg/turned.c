@@ -172,7 +172,7 @@ static void mend_paint(Turned *t, xmlNode *node, const char *property)
     g_autofree char *name = g_strdup_printf("fl-turned-%d", t->n_made++);
     g_autofree char *href = g_strconcat("#", (char *)id, NULL);
     g_autofree char *declaration = g_strdup_printf("%s:url(#%s)", property, name);
-    xmlNode *own = xmlNewDocNode(node->doc, server->ns, server->name, NULL);
+    xmlNode *own = xmlDocCopyNode(server, node->doc, 2); // with its namespaces, without content
     fl_set_attribute(own, "id", name);
     fl_set_attribute(own, "href", href);
     (pattern ? place_pattern : place_gradient)(t, own, server, box);
