@@ -425,8 +425,9 @@ static void test_other_paint(void)
     scene_free(scene);
 }
 
-/* The last of eight frames of a film, 96 px wide, painted without fronts. */
-static FlPicture *last_of(char *const *frames, const char *stain)
+/* The last of eight frames of a film, 96 px wide, painted without fronts. painted: frames, all if
+ * NULL. */
+static FlPicture *last_of(char *const *frames, const char *stain, const char *painted)
 {
     g_autoptr(Scratch) folder = scratch_make();
     for (int f = 1; f <= 8; f++) {
@@ -442,6 +443,7 @@ static FlPicture *last_of(char *const *frames, const char *stain)
     const FlRenderOptions options = {.size = sizeof options,
                                      .inputs = inputs,
                                      .output = output,
+                                     .frames = painted,
                                      .width = 96,
                                      .settings = settings,
                                      .n_settings = G_N_ELEMENTS(settings)};
@@ -456,14 +458,14 @@ static FlPicture *last_of(char *const *frames, const char *stain)
 
 /* The red of a page where a blue coat has left, and there a limb below it, if any, a little later.
  */
-static double red_behind_coat(bool limb, const char *stain)
+static double red_behind_coat(bool limb, const char *stain, const char *painted)
 {
     g_auto(GStrv) frames = g_new0(char *, 9);
     for (int f = 1; f <= 8; f++)
         frames[f - 1] = g_strdup_printf("<path d='M%d 20h5v60h-5z' fill='#a53' display='%s'/>"
                                         "<path d='M%d 15h30v70h-30z' fill='#23a'/>",
                                         f < 7 ? 27 : 90, limb ? "inline" : "none", 17 + 3 * f);
-    FlPicture *picture = last_of(frames, stain);
+    FlPicture *picture = last_of(frames, stain, painted);
     double sum = 0;
     for (int y = 28; y < 68; y++)
         for (int x = 27; x < 31; x++)
@@ -493,7 +495,7 @@ static void test_camera(void)
             "<g transform='rotate(%d 48 48)'><path d='M-99-99h300v300h-300z' fill='#eee'/>"
             "<path d='M%d 14h14v14h-14z' fill='#23a'/></g>",
             8 * MAX(f - 4, 0), f < 5 ? 30 + 6 * f : 900);
-    FlPicture *picture = last_of(frames, "1");
+    FlPicture *picture = last_of(frames, "1", NULL);
     const double turned = blue_at(picture, 60, 24), left = blue_at(picture, 45, 21);
     const double back = blue_at(picture, 31, 27);
     g_test_message("blue %.1f where it has turned to, %.1f where it was, %.1f the other way",
@@ -503,15 +505,18 @@ static void test_camera(void)
     fl_picture_free(picture);
 }
 
-/* A limb that leaves shows no hole in the stain of a coat that was above it. */
+/* A limb that leaves shows no hole in the stain of a coat that was above it. A film that starts
+ * late has the stain as well, though fainter, of frames that are not painted. */
 static void test_limb(void)
 {
-    const double bare = red_behind_coat(false, "0"), stain = red_behind_coat(false, "1");
-    const double limb = red_behind_coat(true, "1");
-    g_test_message("red of bare paper %.2f, of a stain %.2f, of one below a limb %.2f", bare, stain,
-                   limb);
+    const double bare = red_behind_coat(false, "0", NULL),
+                 stain = red_behind_coat(false, "1", NULL);
+    const double limb = red_behind_coat(true, "1", NULL), late = red_behind_coat(false, "1", "8");
+    g_test_message("red of bare paper %.2f, of a stain %.2f, of one below a limb %.2f, late %.2f",
+                   bare, stain, limb, late);
     g_assert_cmpfloat(stain, <, bare - 4);
     g_assert_cmpfloat(limb, <, stain + 0.5 * (bare - stain));
+    g_assert_cmpfloat(late, <, stain + 0.75 * (bare - stain));
 }
 
 /* The most ink of the fronts of a disk of region 3 where paint of a region was seen: of any colour

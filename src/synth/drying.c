@@ -149,10 +149,10 @@ static bool came_into_view(const FlGuides *guides, size_t p, int x, int y)
 static int wetness(const FlDrying *drying, const Place *place, const FlCarried *carried, size_t q,
                    size_t p, int x, int y)
 {
-    const bool new = carried && carried->nnf.match[q].frame == FL_NO_MATCH;
-    if (!carried || (new &&came_into_view(drying->guides, p, x, y)))
+    const bool fresh = carried && carried->nnf.match[q].frame == FL_NO_MATCH;
+    if (!carried || (fresh && came_into_view(drying->guides, p, x, y)))
         return (int)(tends_to(place) * FL_WET + 0.5f);
-    return new ? NEW : next_wetness(place, carried->wet[q]);
+    return fresh ? NEW : next_wetness(place, carried->wet[q]);
 }
 
 bool fl_drying_step(const FlDrying *drying, FlRect rect, const FlCarried *carried, uint8_t *wet,
