@@ -57,7 +57,7 @@ static void mend_blur(Turned *t, xmlNode *node, const FlAffine *map)
     bool blurs = false;
     FL_EACH_ELEMENT (step, filter)
         blurs |= fl_is_one_of(step, steps);
-    if (!blurs || (units && strcmp(units, "objectBoundingBox") == 0))
+    if (!filter || !blurs || (units && strcmp(units, "objectBoundingBox") == 0))
         return;
     g_autofree char *id = g_strdup_printf("fl-turned-%d", t->n_made++);
     g_autofree char *declaration = g_strdup_printf("filter:url(#%s)", id);
