@@ -32,8 +32,9 @@ static void shift_at(const FlMaterial *material, float x, float y, float shift[2
 static bool carry(const FlMaterial *before, const FlGuides *guides, FlRect rect, float less,
                   FlMaterial *now, GError **error)
 {
+    *now = (FlMaterial){0};
     g_autofree uint8_t *cell = fl_alloc(fl_rect_pixels(rect), 1, "a material", error);
-    if (!material_init(now, rect, error) || !cell)
+    if (!cell || !material_init(now, rect, error))
         return false;
     for (int y = 0; before->shift && y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
