@@ -285,9 +285,11 @@ static bool register_part(Work *w, int part, GArray *points, GError **error)
         return true;
     Map far = start_of(w, part, points);
     double left = search(w, &map, points);
-    const double other = search(w, &far, points);
-    if (other < left)
-        left = other, map = far;
+    if (far.p[0] != 0 || far.p[1] != 0) {
+        const double other = search(w, &far, points);
+        if (other < left)
+            left = other, map = far;
+    }
     return left <= start / 2 ? fill_part(w, part, &map, points, error) : fill_flow(w, part, error);
 }
 
