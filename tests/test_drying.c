@@ -101,6 +101,33 @@ static void what_comes_into_view_is_no_fresher_than_what_was_in_view(void)
     g_assert_cmpint(tone, ==, FL_TONE_ONE);
 }
 
+/* The wetness of paint that is laid at (x, MIDDLE), where the drawing moves by u px. */
+static int wet_of_new_paint(int x, float u)
+{
+    g_auto(FlGuides) guides = {0};
+    g_auto(FlCarried) carried = {0};
+    uint8_t now[PIXELS], tones[PIXELS];
+    const FlDrying drying = {&guides, UNIT, SIDE, 1, 0, NULL};
+    fill_guides(&guides, 2 * SIDE, 0, u, 255);
+    g_assert_true(fl_carried_init(&carried, SIDE, SIDE, NULL));
+    for (int p = 0; p < PIXELS; p++)
+        carried.nnf.match[p].frame = FL_NO_MATCH;
+    fl_drying_step(&drying, whole, &carried, now, tones);
+    return now[MIDDLE * SIDE + x];
+}
+
+static void a_place_at_the_side_is_new_unless_it_comes_in_over_it(void)
+{
+    const int new = wet_of_new_paint(MIDDLE, 0), right = SIDE - 2;
+    g_assert_cmpint(new, >, FL_WET / 2);
+    g_assert_cmpint(wet_of_new_paint(1, 0), ==, new);
+    g_assert_cmpint(wet_of_new_paint(right, 0), ==, new);
+    g_assert_cmpint(wet_of_new_paint(1, -1), ==, new);
+    g_assert_cmpint(wet_of_new_paint(right, 1), ==, new);
+    g_assert_cmpint(wet_of_new_paint(1, 1), <, new / 2);
+    g_assert_cmpint(wet_of_new_paint(right, -1), <, new / 2);
+}
+
 /* Matches go on in the recording, in their place, or at their depth beside a rim. */
 static void paint_that_dries_goes_on_in_the_recording(void)
 {
@@ -168,6 +195,7 @@ int main(int argc, char **argv)
     TEST(new_paint_is_fresh_and_at_rest_is_dry_in_time);
     TEST(what_moves_is_damp_all_through);
     TEST(what_comes_into_view_is_no_fresher_than_what_was_in_view);
+    TEST(a_place_at_the_side_is_new_unless_it_comes_in_over_it);
     TEST(paint_that_dries_goes_on_in_the_recording);
     TEST(paint_that_plays_is_as_old_as_its_way_from_the_edge);
 #undef TEST

@@ -133,17 +133,23 @@ static uint8_t tone_of(const FlDrying *drying, const Place *place, int wet, floa
     return (uint8_t)(FL_TONE_ONE * tone + 0.5f);
 }
 
-/* True if a place of the body was beyond a side of the page, or so near to it that its patch was
- * cut off: paint that is laid there now is not new. */
+/* True if a place came inward from beyond a side of the page, or from so near to it that its patch
+ * was cut off; along one axis. */
+static bool came_in(float is, int32_t motion, int size)
+{
+    const float margin = FL_PATCH_RADIUS + 1; // paint is carried from a pixel beside that place
+    const float was = is - (float)motion / FL_MOTION_ONE;
+    return (was < is && was < margin) || (was > is && was > (float)size - 1 - margin);
+}
+
+/* True if a place of the body came in at a side of the page: paint that is laid there now is not
+ * new. */
 static bool came_into_view(const FlGuides *guides, size_t p, int x, int y)
 {
-    if (!guides->has_motion || guides->motion[2 * p] == FL_MOTION_UNKNOWN)
-        return false;
-    const float was_x = (float)x - (float)guides->motion[2 * p] / FL_MOTION_ONE;
-    const float was_y = (float)y - (float)guides->motion[2 * p + 1] / FL_MOTION_ONE;
-    const float margin = FL_PATCH_RADIUS + 1; // paint is carried from a pixel beside that place
-    return MIN(was_x, was_y) < margin || was_x > (float)guides->width - 1 - margin ||
-           was_y > (float)guides->height - 1 - margin;
+    const int32_t *motion = guides->motion + 2 * p;
+    return guides->has_motion && motion[0] != FL_MOTION_UNKNOWN &&
+           (came_in((float)x, motion[0], guides->width) ||
+            came_in((float)y, motion[1], guides->height));
 }
 
 static int wetness(const FlDrying *drying, const Place *place, const FlCarried *carried, size_t q,
