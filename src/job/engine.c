@@ -53,7 +53,7 @@ static bool patch_rest(void *state)
 
 static int patch_drying(const FlStyleInstance *style, const FlParams *params)
 {
-    return fl_synth_dries(style->exemplar, params);
+    return fl_synth_drying_frames(style->exemplar, params);
 }
 
 /* ---- lazyfluids: an exemplar that rides on the motion, used equally [L15] -----------------------

@@ -342,7 +342,7 @@ static bool measure_depth(const FlPainter *painter, int frame, FlGuides *guides,
 }
 
 /* The frames that paint takes to dry; 0: it does not show it. */
-static int dries(const FlPainter *painter)
+static int drying_frames(const FlPainter *painter)
 {
     const FlEngine *engine = painter->plan->engine;
     const FlParams *params = &painter->plan->settings.params;
@@ -388,8 +388,9 @@ static bool measure_bare(const FlPainter *painter, FlGuides *guides, GError **er
 /* Returns: true if paint may still dry after its last motion. */
 static bool may_dry(const FlPainter *painter)
 {
+    const int first = MAX(painter->picture - drying_frames(painter), 1);
     bool moved = false;
-    for (int f = MAX(painter->picture - dries(painter), 1); f < painter->picture && !moved; f++)
+    for (int f = first; f < painter->picture && !moved; f++)
         moved = !fl_guide_sequence_rests(painter->sequence, f);
     return moved;
 }
@@ -434,7 +435,7 @@ bool fl_painter_make_guides(FlPainter *painter, GError **error)
            (!deep || measure_depth(painter, frame_of(painter, depth_picture(painter, picture)),
                                    guides, error)) &&
            fl_guide_sequence_planes(painter->sequence, picture, guides, error) &&
-           (!dries(painter) || measure_bare(painter, guides, error)) &&
+           (!drying_frames(painter) || measure_bare(painter, guides, error)) &&
            read_map(painter, guides, error);
 }
 

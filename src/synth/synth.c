@@ -99,7 +99,7 @@ static bool carry_last(const FlSynth *synth, const FlGuides *guides, FlRect rect
 #define DRY_AFTER 36     // frames at rest
 #define DRIES_FROM 0.75f // carry from which on paint dries, wholly where it is 1
 
-int fl_synth_dries(const FlExemplar *exemplar, const FlParams *params)
+int fl_synth_drying_frames(const FlExemplar *exemplar, const FlParams *params)
 {
     const int window = exemplar->level[0].window;
     const bool dries = params->carry > DRIES_FROM && params->w_age > 0 && window > 1;
@@ -108,7 +108,7 @@ int fl_synth_dries(const FlExemplar *exemplar, const FlParams *params)
 
 static bool dries(const FlSynth *synth)
 {
-    return fl_synth_dries(synth->exemplar, synth->params) > 0;
+    return fl_synth_drying_frames(synth->exemplar, synth->params) > 0;
 }
 
 /* The frames of the exemplar that paint plays by its age; 0: it dries. */

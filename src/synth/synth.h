@@ -46,7 +46,7 @@ bool fl_synth_rest(FlSynth *synth);
 
 /** The frames after which paint at rest is dry, or has played the exemplar; 0: it does not show its
  * wetness. Only paint that is carried whole has a known age. */
-int fl_synth_dries(const FlExemplar *exemplar, const FlParams *params);
+int fl_synth_drying_frames(const FlExemplar *exemplar, const FlParams *params);
 
 /**
  * The guides of the frame just painted, which must have had a view and levels in its statistics.
