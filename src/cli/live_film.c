@@ -41,18 +41,35 @@ static bool is_forwarded(const FlOption *option, const FlRenderOptions *options)
            fl_option_is_set(option, options) && !g_strv_contains(own, option->name);
 }
 
-void fl_live_film_options(const FlArgs *args, GPtrArray *words)
+static void append_word(GString *command, const char *word)
 {
+    const bool plain = strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                    "0123456789-_./=%,+") == strlen(word);
+    g_autofree char *quoted = plain ? g_strdup(word) : g_shell_quote(word);
+    g_string_append_printf(command, " %s", quoted);
+}
+
+char *fl_live_film_command(const FlArgs *args, const char *config)
+{
+    GString *command = g_string_new("fluidy-svg");
+    for (const char *const *input = args->render.inputs; *input; input++)
+        append_word(command, *input);
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *option = fl_option_at(i);
         if (!is_forwarded(option, &args->render))
             continue;
-        g_ptr_array_add(words, g_strdup_printf("--%s", option->name));
+        g_string_append_printf(command, " --%s", option->name);
+        g_autofree char *value = fl_option_get(option, &args->render);
         if (fl_option_takes_value(option))
-            g_ptr_array_add(words, fl_option_get(option, &args->render));
+            append_word(command, value);
     }
-    for (guint i = 0; i < args->limits->len; i++)
-        g_ptr_array_add(words, g_strdup_printf("--limit=%s", (char *)args->limits->pdata[i]));
+    for (guint i = 0; i < args->limits->len; i++) {
+        g_autofree char *limit = g_strconcat("--limit=", args->limits->pdata[i], NULL);
+        append_word(command, limit);
+    }
+    append_word(command, "-c");
+    append_word(command, config);
+    return g_string_free(command, FALSE);
 }
 
 static bool set_options(FlLiveFilm *film, GError **error)

@@ -61,7 +61,7 @@ void fl_live_job_free(FlLiveJob *job);
 /** Stops what is being done, and ends the thread; NULL is fine. */
 void fl_live_film_free(FlLiveFilm *film);
 
-/** The words of the command line that paint the film, without config and inputs. Appends copies. */
-void fl_live_film_options(const FlArgs *args, GPtrArray *words);
+/** The command that paints the film by the config at the path, for a shell; to be freed. */
+char *fl_live_film_command(const FlArgs *args, const char *config);
 
 #endif

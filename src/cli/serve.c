@@ -86,29 +86,12 @@ static void tell(Live *live, const char *kind, const char *text)
         g_ptr_array_remove_index(live->messages, 0);
 }
 
-static void append_command(GString *json, const Live *live)
-{
-    g_autoptr(GPtrArray) words = g_ptr_array_new_with_free_func(g_free);
-    g_autoptr(GString) line = g_string_new("fluidy-svg");
-    for (const char *const *input = live->args->render.inputs; *input; input++)
-        g_ptr_array_add(words, g_strdup(*input));
-    fl_live_film_options(live->args, words);
-    g_ptr_array_add(words, g_strdup("-c"));
-    g_ptr_array_add(words, g_strdup(fl_live_config_path(live->config)));
-    for (guint k = 0; k < words->len; k++) {
-        const char *word = words->pdata[k];
-        const bool plain = strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                        "0123456789-_./=%,+") == strlen(word);
-        g_autofree char *quoted = plain ? g_strdup(word) : g_shell_quote(word);
-        g_string_append_printf(line, " %s", quoted);
-    }
-    fl_json_text(json, "command", line->str);
-}
-
 /* All that the page shows besides the film and its pictures; to be freed. */
 static char *state_of(const Live *live)
 {
-    g_autofree char *name = g_path_get_basename(fl_live_config_path(live->config));
+    const char *path = fl_live_config_path(live->config);
+    g_autofree char *name = g_path_get_basename(path);
+    g_autofree char *command = fl_live_film_command(live->args, path);
     char **undo = fl_live_config_choice(live->config, -1);
     char **redo = fl_live_config_choice(live->config, 1);
     GString *json = g_string_new("{\"state\":{");
@@ -117,7 +100,7 @@ static char *state_of(const Live *live)
     fl_json_text(json, "file", name);
     fl_json_text(json, "undo", undo ? undo[1] : NULL); // the keys
     fl_json_text(json, "redo", redo ? redo[1] : NULL);
-    append_command(json, live);
+    fl_json_text(json, "command", command);
     g_string_append(json, ",\"messages\":[");
     for (guint k = 0; k < live->messages->len; k++)
         g_string_append_printf(json, k > 0 ? ",%s" : "%s", (char *)live->messages->pdata[k]);
