@@ -425,9 +425,8 @@ static void test_other_paint(void)
     scene_free(scene);
 }
 
-/* The last of eight frames of a film, 96 px wide, painted without fronts. painted: frames, all if
- * NULL. */
-static FlPicture *last_of(char *const *frames, const char *stain, const char *painted)
+/* The last of eight frames of a film, painted without fronts. painted: frames, all if NULL. */
+static FlPicture *last_of(char *const *frames, int width, const char *stain, const char *painted)
 {
     g_autoptr(Scratch) folder = scratch_make();
     for (int f = 1; f <= 8; f++) {
@@ -444,7 +443,7 @@ static FlPicture *last_of(char *const *frames, const char *stain, const char *pa
                                      .inputs = inputs,
                                      .output = output,
                                      .frames = painted,
-                                     .width = 96,
+                                     .width = width,
                                      .settings = settings,
                                      .n_settings = G_N_ELEMENTS(settings)};
     g_autoptr(GError) error = NULL;
@@ -465,7 +464,7 @@ static double red_behind_coat(bool limb, const char *stain, const char *painted)
         frames[f - 1] = g_strdup_printf("<path d='M%d 20h5v60h-5z' fill='#a53' display='%s'/>"
                                         "<path d='M%d 15h30v70h-30z' fill='#23a'/>",
                                         f < 7 ? 27 : 90, limb ? "inline" : "none", 17 + 3 * f);
-    FlPicture *picture = last_of(frames, stain, painted);
+    FlPicture *picture = last_of(frames, 96, stain, painted);
     double sum = 0;
     for (int y = 28; y < 68; y++)
         for (int x = 27; x < 31; x++)
@@ -495,7 +494,7 @@ static void test_camera(void)
             "<g transform='rotate(%d 48 48)'><path d='M-99-99h300v300h-300z' fill='#eee'/>"
             "<path d='M%d 14h14v14h-14z' fill='#23a'/></g>",
             8 * MAX(f - 4, 0), f < 5 ? 30 + 6 * f : 900);
-    FlPicture *picture = last_of(frames, "1", NULL);
+    FlPicture *picture = last_of(frames, 96, "1", NULL);
     const double turned = blue_at(picture, 60, 24), left = blue_at(picture, 45, 21);
     const double back = blue_at(picture, 31, 27);
     g_test_message("blue %.1f where it has turned to, %.1f where it was, %.1f the other way",
@@ -503,6 +502,44 @@ static void test_camera(void)
     g_assert_cmpfloat(turned, >, left + 3);
     g_assert_cmpfloat(turned, >, back + 3);
     fl_picture_free(picture);
+}
+
+enum { WIDE = 360 }; // px, of a page whose cells have 2
+
+/* A page on which a shape has left its stain after the ground has gone by `way` px to the right. */
+static FlPicture *after_camera(double way, const char *stain)
+{
+    g_auto(GStrv) frames = g_new0(char *, 9);
+    for (int f = 1; f <= 8; f++)
+        frames[f - 1] =
+            g_strdup_printf("<path d='M%g-99h300v300h-300z' fill='#eee'/>"
+                            "<path d='M%d 40h14v14h-14z' fill='#23a'/>",
+                            -99 + (f > 1 ? way * 96 / WIDE : 0), f < 7 ? 18 + 6 * f : 900);
+    return last_of(frames, WIDE, stain, "8");
+}
+
+/* The middle of that stain, px; bare: the page without it. */
+static double middle_of_stain(const FlPicture *bare, double way)
+{
+    double sum = 0, all = 0;
+    FlPicture *page = after_camera(way, "1");
+    for (int p = 0; p < WIDE * page->height; p++) {
+        const int stain = bare->rgba[4 * p] - page->rgba[4 * p];
+        sum += stain * (p % WIDE), all += stain;
+    }
+    fl_picture_free(page);
+    g_assert_cmpfloat(all, >, 1000);
+    return sum / all;
+}
+
+/* A part of a cell that the camera has gone is no part of the stain's way. */
+static void test_part_of_a_cell(void)
+{
+    FlPicture *bare = after_camera(0, "0");
+    const double still = middle_of_stain(bare, 0), moved = middle_of_stain(bare, 0.8);
+    g_test_message("the middle of a stain at %.2f, and at %.2f after the camera", still, moved);
+    g_assert_cmpfloat_with_epsilon(still, moved, 0.5);
+    fl_picture_free(bare);
 }
 
 /* A limb that leaves shows no hole in the stain of a coat that was above it. A film that starts
@@ -748,6 +785,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/marks-fade-until-none-is-left", test_dries);
     g_test_add_func("/wet/marks-and-grain-move-with-the-paper", test_moved);
     g_test_add_func("/wet/a-stain-turns-with-the-ground", test_camera);
+    g_test_add_func("/wet/a-stain-stays-in-place-between-cells", test_part_of_a_cell);
     g_test_add_func("/wet/the-paper-turns-with-the-camera", test_turned);
     return g_test_run();
 }
