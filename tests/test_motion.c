@@ -651,6 +651,15 @@ static void fill_that_is_drawn_on(GString *out, int t)
                            more[t]);
 }
 
+/* Nodes that hardly add to the outline's length come on its last side; the others are rounded. */
+static void side_that_bulges(GString *out, int t)
+{
+    static const char *const more[] = {"", "L37 100", "L36 140L37 100"};
+    const double off = t % 2 * 0.01;
+    g_string_append_printf(out, "<path fill='" RED "' d='M%.2f 20L%.2f 20L%.2f 180L%.2f 180%sz'/>",
+                           40 + off, 160 + off, 160 - off, 40 + off, more[t]);
+}
+
 static void fill_that_a_clip_opens(GString *out, int t)
 {
     g_string_append_printf(out,
@@ -664,8 +673,8 @@ static void what_is_laid_stays(void)
 {
     static float motion[2 * SIZE * SIZE];
     static Draw *const draws[] = {
-        line_that_draws_itself, line_that_gets_longer, line_with_a_dash,      strokes_that_come,
-        band_that_gets_longer,  fill_that_is_drawn_on, fill_that_a_clip_opens};
+        line_that_draws_itself, line_that_gets_longer, line_with_a_dash, strokes_that_come,
+        band_that_gets_longer,  fill_that_is_drawn_on, side_that_bulges, fill_that_a_clip_opens};
     for (size_t i = 0; i < G_N_ELEMENTS(draws); i++) {
         g_auto(Sequence) s = sequence_of(draws[i], 3);
         for (int t = 1; t < 3; t++) {
