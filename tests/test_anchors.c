@@ -100,6 +100,22 @@ static void a_line_that_turns_turns_its_anchor(void)
     assert_film(folder, 0, 0, 10);
 }
 
+/* The box of a blade holds one side and grows on the other where it passes an axis. */
+static void a_blade_that_turns_has_not_grown(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < N; t++) {
+        g_autofree char *blade = g_strdup_printf(
+            "<path fill=\"red\" transform=\"rotate(%d 50 40)\" d=\"M49,40L49,36L43,28L45,8L53,8"
+            "L52,36L51,40z\"/>",
+            60 + 7 * t);
+        add_frame(folder, t, blade);
+    }
+    g_autoptr(FlDrawing) drawing = open_film(folder);
+    for (int t = 1; t < N; t++)
+        assert_turned(drawing, t, 7 * t);
+}
+
 static void a_group_turns_about_its_centre(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -229,6 +245,7 @@ int main(int argc, char **argv)
          a_shape_that_slides_past_the_page_moves_all_the_same);
     TEST("an-outline-that-turns-turns-its-anchor", an_outline_that_turns_turns_its_anchor);
     TEST("a-line-that-turns-turns-its-anchor", a_line_that_turns_turns_its_anchor);
+    TEST("a-blade-that-turns-has-not-grown", a_blade_that_turns_has_not_grown);
     TEST("a-group-turns-about-its-centre", a_group_turns_about_its_centre);
     TEST("other-nodes-are-no-turn", other_nodes_are_no_turn);
     TEST("a-leaf-that-goes-takes-nothing-along", a_leaf_that_goes_takes_nothing_along);

@@ -132,9 +132,22 @@ static bool is_drawn_on(const FlPose *before, const FlPose *now)
            fabsf(now->start_y - before->start_y) < HELD_PX;
 }
 
+/* True if an outline has moved and turned, and kept its form: the box of a blade that turns grows
+ * on one side and holds the other at some angles. */
+static bool keeps_form(const FlPose *before, const FlPose *now)
+{
+    bool keeps = before->n > 2 && before->n == now->n;
+    for (int h = 0; h < 2; h++)
+        keeps = keeps && fabsf(hypotf(before->harmonic[h][0], before->harmonic[h][1]) -
+                               hypotf(now->harmonic[h][0], now->harmonic[h][1])) < HELD_PX;
+    return keeps;
+}
+
 /* Paint stays where it is in a leaf that is being built, or the reverse. */
 static bool stays(const FlSurveyPart *before, const FlSurveyPart *now, const float page[2])
 {
+    if (keeps_form(&before->pose, &now->pose))
+        return false;
     return is_drawn_on(&before->pose, &now->pose) || has_grown(before->box, now->box, page) ||
            has_grown(now->box, before->box, page);
 }
