@@ -96,18 +96,13 @@ static void append_section(const FlKeyTable *table, const void *object, const vo
 
 char *fl_manifest_text(const FlStyle *style)
 {
-    const FlStyle plain = {.scale = -1, // so that it is always written
-                           .fps = -1,
-                           .border_px = -1,
-                           .granulation = FL_GRANULATION,
-                           .front = FL_FRONT_DEFAULTS,
-                           .wash = FL_WASH_DEFAULTS,
-                           .sheet = FL_SHEET_DEFAULTS};
+    g_autoptr(FlStyle) plain = fl_style_new();
+    plain->scale = plain->fps = plain->border_px = -1; // so that they are always written
     GString *text = g_string_new("[style]\n");
-    fl_key_table_write(&fl_style_table, style, &plain, style->guessed, text);
-    append_section(&fl_front_table, &style->front, &plain.front, "front", text);
-    append_section(&fl_wash_table, &style->wash, &plain.wash, "wash", text);
-    append_section(&fl_sheet_table, &style->sheet, &plain.sheet, "sheet", text);
+    fl_key_table_write(&fl_style_table, style, plain, style->guessed, text);
+    append_section(&fl_front_table, &style->front, &plain->front, "front", text);
+    append_section(&fl_wash_table, &style->wash, &plain->wash, "wash", text);
+    append_section(&fl_sheet_table, &style->sheet, &plain->sheet, "sheet", text);
     for (int k = 0; k < style->settings.n; k++)
         g_string_append_printf(text, "%s%s = %s\n", k == 0 ? "\n[region]\n" : "",
                                style->settings.override[k].key, style->settings.override[k].value);

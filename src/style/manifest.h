@@ -14,9 +14,7 @@ typedef enum FlGuess {
     FL_GUESS_FPS = 1 << 4,
 } FlGuess;
 
-/** The keys of FlStyle, FlFrontStyle, FlWashStyle and FlSheetStyle: recipes have these sections,
- * too.
- */
+/** The keys of FlStyle and of its parts, of which recipes have sections, too. */
 extern const FlKeyTable fl_style_table, fl_front_table, fl_wash_table, fl_sheet_table;
 
 /**
