@@ -161,6 +161,59 @@ static void holes_in_dry_paint_show_the_paint_below(void)
     g_assert_cmpint(grey, <=, red / 50);
 }
 
+/* Paints a square of a fill in watercolour without a wash. */
+static FlPicture *square_of(const char *fill, const char *granulation)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *shape =
+        g_strdup_printf("<path id='square' fill='%s' d='M5 5h90v90h-90z'/>", fill);
+    g_autofree char *drawing = scratch_svg(folder, "d.svg", shape);
+    g_autofree char *output = g_build_filename(folder, "0001.png", NULL);
+    g_autofree char *style = g_test_build_filename(G_TEST_DIST, "styles", "01", NULL);
+    const FlSetting settings[] = {
+        {.name = "style", .value = style},
+        {.name = "wash", .value = "0"},
+        {.name = "hue", .value = "0"},
+        {.name = "granulation", .value = granulation},
+    };
+    const char *const inputs[] = {drawing, NULL};
+    const FlRenderOptions options = {.size = sizeof options,
+                                     .inputs = inputs,
+                                     .output = output,
+                                     .width = SIDE,
+                                     .settings = settings,
+                                     .n_settings = G_N_ELEMENTS(settings)};
+    g_autoptr(GError) error = NULL;
+    fl_render(&options, &error);
+    g_assert_no_error(error);
+    return frame_of(folder, 1);
+}
+
+/* The change of the amount of paint by granulation, as a share of the amount: both as densities
+ * over the paper, which is bare in the corner. */
+static double grain_of(const char *fill)
+{
+    g_autoptr(FlPicture) even = square_of(fill, "0"), grained = square_of(fill, "0.2");
+    double change = 0, paint = 0;
+    for (int y = CELL; y < 2 * CELL; y++)
+        for (int x = CELL; x < 2 * CELL; x++)
+            for (int c = 0; c < 3; c++) {
+                const size_t i = 4 * ((size_t)y * SIDE + (size_t)x) + (size_t)c;
+                change += fabs(log((grained->rgba[i] + 1.) / (even->rgba[i] + 1.)));
+                paint += log((even->rgba[c] + 1.) / (even->rgba[i] + 1.));
+            }
+    return change / paint;
+}
+
+/* Fills of the same three levels: brown is half burnt umber, which is heavy, and blue is violet and
+ * turquoise, which stain. */
+static void heavy_pigments_granulate_more(void)
+{
+    const double brown = grain_of("#b07840"), blue = grain_of("#4078b0");
+    g_test_message("brown %.4f, blue %.4f", brown, blue);
+    g_assert_cmpfloat(brown, >, 1.1 * blue);
+}
+
 int main(int argc, char **argv)
 {
     g_setenv("G_TEST_SRCDIR", g_getenv("FLUIDY_FIXTURES"), true);
@@ -170,5 +223,6 @@ int main(int argc, char **argv)
     TEST(the_number_of_threads_is_the_render_s_own);
     TEST(nothing_jumps_while_a_shape_fades);
     TEST(holes_in_dry_paint_show_the_paint_below);
+    TEST(heavy_pigments_granulate_more);
     return g_test_run();
 }
