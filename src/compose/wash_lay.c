@@ -261,17 +261,22 @@ static inline void lay_in_run(const Brush *brush, int y, Run *restrict run)
 
 FL_FOR_EACH_CPU(lay_run, lay_in_run, (const Brush *brush, int y, Run *run), (brush, y, run))
 
-/* Reads the amounts of px x … end of a row, of which the run's first is px left; with play it
- * writes them, and the plays of pigments. */
-static void exchange(Run *run, int step, int left, int x, int end, int16_t *amounts, int8_t *play)
+/* Takes the amounts of px x … end of a row, of which the run's first is px left. */
+static void take_amounts(Run *run, int step, int left, int x, int end, const int16_t *amounts)
+{
+    for (int i = 0, px = left; i < run->n; i++)
+        for (int place = 0; place < step; place++, px++)
+            run->amounts[place * run->n + i] = px >= x && px < end ? MAX(amounts[px], 0) : 0;
+}
+
+/* Gives those px their new amounts and the plays of pigments; amounts below 0 stay. */
+static void give_amounts(const Run *run, int step, int left, int x, int end, int16_t *amounts,
+                         int8_t *play)
 {
     for (int i = 0, px = left; i < run->n; i++)
         for (int place = 0; place < step; place++, px++) {
             const int at = place * run->n + i;
-            const bool inside = px >= x && px < end;
-            if (!play)
-                run->amounts[at] = inside ? MAX(amounts[px], 0) : 0;
-            else if (inside && amounts[px] >= 0)
+            if (px >= x && px < end && amounts[px] >= 0)
                 amounts[px] = (int16_t)run->amounts[at], play[px] = (int8_t)run->plays[at];
         }
 }
@@ -289,9 +294,9 @@ static void lay_row(const Brush *brush, const FlArea *area, int y, int16_t *amou
         run.first = point - wash->box.x / step;
         run.n = MIN((span.last - left + step - 1) / step, RUN / step);
         const int end = MIN(left + run.n * step, span.last);
-        exchange(&run, step, left, x, end, amounts, NULL);
+        take_amounts(&run, step, left, x, end, amounts);
         lay_run(brush, area->box.y + y, &run);
-        exchange(&run, step, left, x, end, amounts, play);
+        give_amounts(&run, step, left, x, end, amounts, play);
         x = end;
     }
 }
