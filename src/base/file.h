@@ -32,7 +32,7 @@ typedef struct FlFileWait {
 bool fl_file_read(const char *path, size_t most, const FlFileWait *wait, char **data, size_t *bytes,
                   GError **error);
 
-/** Compares two strings by their addresses, for sorting. */
+/** Compares the strings at two pointers to char *, for sorting. */
 int fl_by_name(const void *a, const void *b);
 
 /** The names in a folder, sorted; NULL with FL_ERROR_INPUT. To be unref'd. */

@@ -107,9 +107,9 @@ const FlRowKernels *fl_row_kernels_for(unsigned flags);
 const FlRowKernels *fl_row_kernels(void);
 
 /**
- * Defines the function `name`: an inline function `of` as compiled for this processor, which has
- * the same parameters, in parentheses, and whose arguments are their names, in parentheses. It is
- * for loops over pixels that belong to one file.
+ * Defines the static function `name`: it runs the inline function `of` as it is compiled for this
+ * processor. Both have these parameters, and the arguments are their names, each in parentheses.
+ * It is for loops over pixels in one file; those of several files are in the table above.
  */
 #ifdef __x86_64__
 #define FL_FOR_EACH_CPU(name, of, parameters, arguments)                                           \

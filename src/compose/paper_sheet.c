@@ -27,7 +27,7 @@
 /* The planes of a sheet and a margin for blur and slope. */
 typedef struct Surface {
     FlPaperPlace place;
-    FlPaperSpread slope, fine; // of the height, and of what of it is finer than FINE_PX
+    FlPaperSpread slope, fine; // of its slope and of its structures finer than FINE_PX
     float relief;
     int margin;
     FlRect box; // the sheet and the margin

@@ -267,7 +267,7 @@ static void add_values(const FlWashField *field, const float *weight, size_t at,
     }
 }
 
-/* Leaves out parts that have next to nothing of a point. */
+/* Lowers all shares by LEAST_SHARE, so that the least parts of a point are left out. */
 static void drop_least(const FlWashField *field)
 {
     for (int k = 0; k < field->n_parts; k++)

@@ -214,7 +214,8 @@ void fl_field_fill_masks(const FlWashField *field, const FlWashes *washes, int w
         fl_field_blur(field, field->part[k].weight, FL_WASH_JOINT_PX);
 }
 
-/* Parts that touch count by how far a point is from each limb, by the limb's own spread. */
+/* Divides a limb's weights by its distance from each point, in units of the limb's own spread: of
+ * parts that touch the nearest one counts most. */
 static void weigh_limb(const FlWashField *field, const FlLimb *limb, float *weight)
 {
     const FlWash *wash = field->wash;

@@ -16,7 +16,7 @@ void fl_find_concentration(FlSheet *sheet, const float *g)
         c[i] = s[i] > FL_DRY ? g[i] / s[i] : 0;
 }
 
-/* What passes a face has the concentration of its donor cell. */
+/* The flux over a face has the concentration of its donor cell. */
 static inline float carried(float flux, float before, float after)
 {
     return (flux > 0 ? flux : 0) * before + (flux < 0 ? flux : 0) * after;
