@@ -73,7 +73,7 @@ static void free_entry(void *data)
     g_free(entry);
 }
 
-/* What the style.ini of a folder says; nothing if it is missing or broken. */
+/* The values of a folder's style.ini; an empty style if it is missing or broken. */
 static FlStyle *read_manifest(const char *folder)
 {
     g_autoptr(FlStyle) style = g_new0(FlStyle, 1);

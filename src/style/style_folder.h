@@ -49,7 +49,7 @@ typedef struct FlWashStyle {
 typedef struct FlSheetStyle {
     float grain;   // size of its bumps, px of a page of 1000 px, > 0
     float stretch; // how much wider than high they are, > 0
-    float tooth;   // weight of what is finer, 0..4
+    float tooth;   // weight of the finer roughness on them, 0..4
     float fibre;   // weight of fibres, 0..4
     float relief;  // strength of its light, as a share of the usual one, 0..4
 } FlSheetStyle;
