@@ -86,18 +86,21 @@ static void an_outline_that_turns_turns_its_anchor(void)
     assert_film(folder, 2, 0, 12);
 }
 
-/* A limb that is drawn as one line. */
-static void a_line_that_turns_turns_its_anchor(void)
+static void assert_turns(const char *shapes)
 {
     g_autoptr(Scratch) folder = scratch_make();
     for (int t = 0; t < N; t++) {
-        g_autofree char *line = g_strdup_printf(
-            "<path d=\"M25,40H75\" fill=\"none\" stroke=\"red\" stroke-width=\"12\" "
-            "transform=\"rotate(%d 50 40)\"/>",
-            10 * t);
-        add_frame(folder, t, line);
+        g_autofree char *group =
+            g_strdup_printf("<g transform=\"rotate(%d 50 40)\">%s</g>", 10 * t, shapes);
+        add_frame(folder, t, group);
     }
     assert_film(folder, 0, 0, 10);
+}
+
+/* A limb that is drawn as one line. */
+static void a_line_that_turns_turns_its_anchor(void)
+{
+    assert_turns("<path d=\"M25,40H75\" fill=\"none\" stroke=\"red\" stroke-width=\"12\"/>");
 }
 
 /* The box of a blade holds one side and grows on the other where it passes an axis. */
@@ -118,15 +121,8 @@ static void a_blade_that_turns_has_not_grown(void)
 
 static void a_group_turns_about_its_centre(void)
 {
-    g_autoptr(Scratch) folder = scratch_make();
-    for (int t = 0; t < N; t++) {
-        g_autofree char *group = g_strdup_printf(
-            "<g transform=\"rotate(%d 50 40)\" fill=\"red\"><circle cx=\"30\" cy=\"40\" r=\"9\"/>"
-            "<circle cx=\"70\" cy=\"40\" r=\"9\"/></g>",
-            10 * t);
-        add_frame(folder, t, group);
-    }
-    assert_film(folder, 0, 0, 10);
+    assert_turns("<circle cx=\"30\" cy=\"40\" r=\"9\" fill=\"red\"/>"
+                 "<circle cx=\"70\" cy=\"40\" r=\"9\" fill=\"red\"/>");
 }
 
 static void other_nodes_are_no_turn(void)

@@ -447,6 +447,8 @@ static void gaps_of_librsvg_are_filled(void)
                     "patternContentUnits='objectBoundingBox'><path/></pattern>"
                     "<g fill='url(#o)'><rect x='3' width='8' height='2' transform='rotate(9)' "
                     "stroke='url(#q)'/><rect width='4' height='2'/></g>"
+                    "<clipPath id='u'/><clipPath id='v' clip-path='url(#u)'/>"
+                    "<s:path xmlns:s='http://www.w3.org/2000/svg' clip-path='url(#v)'/>"
                     "<use href='#s'/><symbol id='w' width='7' height='5'/><use href='#w'/>"
                     "<image href='data:image/svg+xml,%3csvg xmlns=\"http://www.w3.org/2000/svg\" "
                     "width=\"2\" height=\"1\"/%3e'/>");
@@ -463,6 +465,7 @@ static void gaps_of_librsvg_are_filled(void)
     g_assert_nonnull(strstr(text, "x=\"3\" y=\"0\"><g transform=\"matrix(8, 0, 0, 2, 0, 0)\">"));
     g_assert_nonnull(strstr(text, "xmlns:s=\"http://www.w3.org/2000/svg\" id=\"fl-turned-1\""));
     g_assert_nonnull(strstr(text, "\"fill:url(#fl-turned-1);stroke:url(#fl-turned-2)\""));
+    g_assert_nonnull(strstr(text, "<g style=\"clip-path:url(#u);mix-blend-mode:normal\""));
     g_assert_null(strstr(text, "<stop id"));
     g_assert_nonnull(strstr(text, "width=\"7\" height=\"5\" data-fl-id=\"w\" overflow"));
     g_assert_nonnull(strstr(text, "svg+xml;base64,"));
@@ -482,6 +485,20 @@ static void each_kind_that_is_left_out_is_told_once(void)
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, ":has(a)"));
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 1)->text, "backdrop-filter"));
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 2)->text, "nonsense"));
+}
+
+static void turned_blurs_beyond_the_bound_are_told(void)
+{
+    g_autoptr(GString) content = g_string_new("<filter id='f'>");
+    for (int i = 0; i < 10000; i++)
+        g_string_append(content, "<feGaussianBlur/>");
+    g_string_append(content, "</filter>");
+    for (int i = 0; i < 10; i++) {
+        g_autoptr(FlWarnings) warnings = fl_warnings_new();
+        g_string_append(content, "<path id='a' filter='url(#f)' transform='rotate(9)'/>");
+        g_free(computed(content->str, "a", "filter", warnings));
+        g_assert_cmpint(fl_warnings_count(warnings), ==, i == 9);
+    }
 }
 
 static void values_that_librsvg_leaves_out_are_told(void)
@@ -546,6 +563,7 @@ int main(int argc, char **argv)
     TEST(images_keep_their_shape);
     TEST(gaps_of_librsvg_are_filled);
     TEST(each_kind_that_is_left_out_is_told_once);
+    TEST(turned_blurs_beyond_the_bound_are_told);
     TEST(values_that_librsvg_leaves_out_are_told);
     TEST(hostile_sheets_come_to_an_end);
     return g_test_run();

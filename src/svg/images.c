@@ -145,7 +145,7 @@ static void embed_drawing(const Check *check, xmlNode *node, xmlAttr *a, const c
         warn(check, node, href, "cannot be read and is left out");
         return;
     }
-    fl_document_mend(doc);
+    fl_document_mend(doc, check->path, check->number, check->warnings);
     enlarge(xmlDocGetRootElement(doc), node);
     size_t n = 0;
     g_autofree char *plain = fl_document_text(doc, &n);

@@ -217,7 +217,7 @@ static xmlNode *wrap(xmlNode *node, const xmlNode *clip)
     g_autofree char *blend = fl_property(node, "mix-blend-mode");
     g_autofree char *declarations =
         g_strdup_printf("clip-path:%s;mix-blend-mode:%s", value, blend ? blend : "normal");
-    xmlNode *group = xmlNewDocNode(node->doc, node->ns, (const xmlChar *)"g", NULL);
+    xmlNode *group = xmlNewDocNode(node->doc, node->parent->ns, (const xmlChar *)"g", NULL);
     fl_declare(group, declarations);
     if (blend)
         fl_declare(node, "mix-blend-mode:normal");
@@ -380,10 +380,13 @@ static void mend(Mend *m, xmlNode *node)
     }
 }
 
-void fl_document_mend(xmlDoc *doc)
+void fl_document_mend(xmlDoc *doc, const char *path, int number, FlWarnings *warnings)
 {
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
     Mend m = {.ids = ids};
-    fl_document_mend_turned(doc, ids);
+    if (!fl_document_mend_turned(doc, ids))
+        fl_warnings_add(warnings, path, number, NULL,
+                        "too many turned shapes have a blur or a pattern; those of the rest may "
+                        "look wrong");
     mend(&m, xmlDocGetRootElement(doc));
 }

@@ -30,12 +30,13 @@ bool fl_images_check(xmlDoc *doc, const char *path, int number, GPtrArray *files
  * <mask> has no mask. Filters that only blend with the background become blend modes; others read
  * an empty one, by the name of FL_NO_BACKGROUND.
  */
-void fl_document_mend(xmlDoc *doc);
+void fl_document_mend(xmlDoc *doc, const char *path, int number, FlWarnings *warnings);
 
 #define FL_NO_BACKGROUND "fl-no-background"
 
-/** A part of it, for shapes that are turned: round blurs, and paints in units of their box. */
-void fl_document_mend_turned(xmlDoc *doc, GHashTable *ids);
+/** A part of it, for shapes that are turned: round blurs, and paints in units of their box.
+ * Returns: false if their filters and patterns became too many, and the rest stays as it is. */
+bool fl_document_mend_turned(xmlDoc *doc, GHashTable *ids);
 
 /* ---- the fonts of its text ------------------------------------------------------------------- */
 

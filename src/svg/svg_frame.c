@@ -50,7 +50,7 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
     const double seconds = options->from == FL_FRAMES_TIME ? options->seconds : NAN;
     if (!fl_cascade(svg->doc, path, number, seconds, NULL, svg->files, warnings, error))
         return NULL;
-    fl_document_mend(svg->doc);
+    fl_document_mend(svg->doc, path, number, warnings);
     fl_lint(svg->doc, path, number, warnings);
     if (!fl_images_check(svg->doc, path, number, svg->files, warnings, error))
         return NULL;

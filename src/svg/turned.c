@@ -70,8 +70,7 @@ static void mend_blur(Turned *t, xmlNode *node, const FlAffine *map)
             turn_blur(step, map);
 }
 
-/* ---- paints in units of the box ---------------------------------------------------------------
- */
+/* ---- paints in units of the box ------------------------------------------------------------ */
 
 /** The first in a chain of paint servers that has an attribute; without `name`, that has content.
  */
@@ -200,7 +199,7 @@ static void visit(Turned *t, xmlNode *node, const FlAffine *around)
         visit(t, child, &map);
 }
 
-void fl_document_mend_turned(xmlDoc *doc, GHashTable *ids)
+bool fl_document_mend_turned(xmlDoc *doc, GHashTable *ids)
 {
     const FlAffine none = FL_AFFINE_NONE;
     xmlNode *root = xmlDocGetRootElement(doc);
@@ -208,4 +207,5 @@ void fl_document_mend_turned(xmlDoc *doc, GHashTable *ids)
     fl_view_box(root, box);
     Turned t = {.ids = ids, .units = {.width = box[2], .height = box[3]}};
     visit(&t, root, &none);
+    return t.n_copied < MOST_COPIED;
 }
