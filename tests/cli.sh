@@ -173,6 +173,10 @@ rm page.html
 result $? '--list-styles is a list and a sheet'
 "$program" whole -s 01 --detail draft -o '{name}/{name}.gif' -q >out 2>err && [ -s w/w.gif ]
 result $? 'the name of the drawing can stand in that of the output'
+mkdir 'held 5%' && "$program" whole -s 01 --detail draft -f 1 -q -o 'held 5%' >out 2>err &&
+    "$program" whole -s 01 --detail draft -f 1 -q -o held/folder/ >>out 2>>err &&
+    [ -s 'held 5%/w_0001.png' ] && [ -s held/folder/w_0001.png ]
+result $? 'a folder as output is filled'
 refuses 'a sheet that is no PNG is refused' 2 'styles.jpg: sheets are PNG files; *' --list-styles -o styles.jpg
 refuses 'a sheet that exists stays' 1 'styles.png: already exists*' --list-styles -o styles.png
 "$program" whole -s 01 --detail draft -o 'a/w_%d.png' --layers 'a/{region}_%d.png' >out 2>err &&

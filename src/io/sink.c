@@ -113,7 +113,8 @@ static void no_format(const char *name, const char *path, GError **error)
     g_autofree char *hint = fl_did_you_mean(name ? name : dot ? dot + 1 : path, words);
     g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                 name ? "%s: unknown output format; expected one of %s%s"
-                     : "%s: the end of the name means no output format; expected one of %s%s",
+                     : "%s: the end of the name means no output format; expected one of %s, "
+                       "or a folder, which ends with /%s",
                 name ? name : path, list, hint);
 }
 

@@ -41,10 +41,20 @@ FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **er
     return fl_sequence_open(&wanted, NULL, error);
 }
 
-static char *default_output(const FlPlan *plan)
+static bool is_folder(const char *output)
+{
+    return g_str_has_suffix(output, "/") || g_file_test(output, G_FILE_TEST_IS_DIR);
+}
+
+/* The film's own name in a folder. */
+static char *default_output(const FlPlan *plan, const char *folder)
 {
     const char *suffix = plan->out.format->suffix ? plan->out.format->suffix : ".png";
-    return g_strdup_printf("fluidy/{name}%s%s", plan->out.format->film ? "" : "_%04d", suffix);
+    g_autoptr(GString) path = g_string_new(folder);
+    g_string_replace(path, "%", "%%", 0);
+    g_string_append_printf(path, "%s{name}%s%s", g_str_has_suffix(folder, "/") ? "" : "/",
+                           plan->out.format->film ? "" : "_%04d", suffix);
+    return g_string_free(g_steal_pointer(&path), FALSE);
 }
 
 /* The frames of a film lie in its folder: walk_0001.png, … beside walk.mov. */
@@ -71,10 +81,11 @@ static bool choose_frames(FlPlan *plan, GError **error)
 static bool name_output(FlPlan *plan, const FlSequence *sequence, GError **error)
 {
     const char *format = plan->options.format, *requested = plan->options.output;
-    plan->out.format = fl_sink_format(format || requested ? format : "png", requested, error);
+    const char *folder = !requested ? "fluidy" : is_folder(requested) ? requested : NULL;
+    plan->out.format = fl_sink_format(format || !folder ? format : "png", requested, error);
     if (!plan->out.format)
         return false;
-    g_autofree char *pattern = requested ? g_strdup(requested) : default_output(plan);
+    g_autofree char *pattern = folder ? default_output(plan, folder) : g_strdup(requested);
     plan->out.output = fl_output_of_film(pattern, sequence->name);
     if (!plan->out.format->film && !fl_output_is_pattern(plan->out.output) && sequence->n > 1)
         return fl_fail(error, FL_ERROR_USAGE,
