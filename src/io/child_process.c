@@ -115,6 +115,14 @@ FlChild *fl_child_start_reader(const char *const *arguments, const char *file, G
     return start(arguments, FL_CHILD_OUTPUT, file, -1, NULL, error);
 }
 
+void fl_arguments_add(GPtrArray *arguments, const char *words)
+{
+    g_auto(GStrv) parts = g_strsplit(words, " ", -1);
+    for (char **part = parts; *part; part++)
+        if (**part)
+            g_ptr_array_add(arguments, g_strdup(*part));
+}
+
 char *fl_child_stderr_tail(const FlChild *child)
 {
     char text[1024] = "";

@@ -3,6 +3,7 @@
 #define FLUIDY_IO_CHILD_PROCESS_H
 
 #include <fluidy/error.h>
+#include <glib.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -24,6 +25,9 @@ typedef struct FlPatience {
 /** The name under which a child finds the file that it is given, to open it as often as it likes.
  */
 #define FL_CHILD_FILE "/dev/fd/3"
+
+/** Adds words between spaces to the arguments of a program, which are char *. */
+void fl_arguments_add(GPtrArray *arguments, const char *words);
 
 /**
  * Starts arguments[0], looked up in $PATH, in a process group of its own, so that an interrupt from

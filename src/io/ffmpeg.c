@@ -16,21 +16,31 @@ struct FlFfmpeg {
     FlChild *child;
 };
 
-/* A name that ffmpeg cannot mistake for an option or a protocol. */
-static char *file_url(const char *path)
+/* Arguments, with a name between the words that ffmpeg cannot mistake for an option or a protocol.
+ */
+static GPtrArray *arguments_for(const char *before, const char *path, const char *after)
 {
     g_autofree char *absolute = g_canonicalize_filename(path, NULL);
-    return g_strconcat("file:", absolute, NULL);
+    GPtrArray *arguments = g_ptr_array_new_with_free_func(g_free);
+    fl_arguments_add(arguments, before);
+    g_ptr_array_add(arguments, g_strconcat("file:", absolute, NULL));
+    fl_arguments_add(arguments, after);
+    g_ptr_array_add(arguments, NULL);
+    return arguments;
 }
 
-static FlFfmpeg *start(const char *path, const char *kind, const char *const *args, GError **error)
+#define FFMPEG "ffmpeg -v error -nostdin -protocol_whitelist file "
+
+static FlFfmpeg *start(const char *path, const char *kind, const char *before, const char *after,
+                       GError **error)
 {
     g_autoptr(FlFfmpeg) ffmpeg = g_new(FlFfmpeg, 1);
+    g_autoptr(GPtrArray) arguments = arguments_for(before, path, after);
     g_autoptr(GError) below = NULL;
     *ffmpeg = (FlFfmpeg){.path = g_strdup(path), .kind = kind};
     if (!fl_file_check(path, FL_ERROR_INPUT, error))
         return NULL;
-    ffmpeg->child = fl_child_start_reader(args, path, &below);
+    ffmpeg->child = fl_child_start_reader((const char *const *)arguments->pdata, path, &below);
     if (!ffmpeg->child) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
                     "%s: cannot be read without the ffmpeg program: %s", path, below->message);
@@ -41,18 +51,13 @@ static FlFfmpeg *start(const char *path, const char *kind, const char *const *ar
 
 FlFfmpeg *fl_ffmpeg_open(const char *path, int first, int last, int step, GError **error)
 {
-    g_autofree char *url = file_url(path);
     g_autofree char *end = last ? g_strdup_printf("*lte(n\\,%d)", last - 1) : g_strdup("");
-    g_autofree char *select = g_strdup_printf("select=gte(n\\,%d)%s*not(mod(n-%d\\,%d))", first - 1,
-                                              end, first - 1, step);
-    g_autofree char *count = g_strdup_printf("%d", last ? (last - first) / step + 1 : INT32_MAX);
-    const char *const args[] = {
-        "ffmpeg",   "-v",   "error",      "-nostdin",    "-protocol_whitelist",
-        "file",     "-i",   url,          "-map",        "0:v:0",
-        "-vf",      select, "-fps_mode",  "passthrough", "-frames:v",
-        count,      "-f",   "image2pipe", "-c:v",        "pam",
-        "-pix_fmt", "rgba", "pipe:1",     NULL};
-    return start(path, "pictures", args, error);
+    g_autofree char *after = g_strdup_printf(
+        "-map 0:v:0 -vf select=gte(n\\,%d)%s*not(mod(n-%d\\,%d)) -fps_mode passthrough -frames:v "
+        "%d "
+        "-f image2pipe -c:v pam -pix_fmt rgba pipe:1",
+        first - 1, end, first - 1, step, last ? (last - first) / step + 1 : INT32_MAX);
+    return start(path, "pictures", FFMPEG "-i", after, error);
 }
 
 void fl_ffmpeg_close(FlFfmpeg *ffmpeg)
@@ -198,33 +203,13 @@ static int open_temporary(GError **error)
 
 static FlFfmpeg *start_sound(const char *path, double from_s, double seconds, GError **error)
 {
-    g_autofree char *url = file_url(path);
     char from[G_ASCII_DTOSTR_BUF_SIZE], length[G_ASCII_DTOSTR_BUF_SIZE];
     g_ascii_formatd(from, sizeof from, "%.6f", from_s);
     g_ascii_formatd(length, sizeof length, "%.6f", seconds);
-    const char *const args[] = {"ffmpeg",
-                                "-v",
-                                "error",
-                                "-nostdin",
-                                "-protocol_whitelist",
-                                "file",
-                                "-ss",
-                                from,
-                                "-i",
-                                url,
-                                "-map",
-                                "0:a:0",
-                                "-t",
-                                length,
-                                "-ac",
-                                G_STRINGIFY(FL_SOUND_CHANNELS),
-                                "-ar",
-                                G_STRINGIFY(FL_SOUND_RATE),
-                                "-f",
-                                "s16le",
-                                "pipe:1",
-                                NULL};
-    return start(path, "sound", args, error);
+    g_autofree char *before = g_strdup_printf(FFMPEG "-ss %s -i", from);
+    g_autofree char *after = g_strdup_printf("-map 0:a:0 -t %s -ac %d -ar %d -f s16le pipe:1",
+                                             length, FL_SOUND_CHANNELS, FL_SOUND_RATE);
+    return start(path, "sound", before, after, error);
 }
 
 int fl_ffmpeg_sound(const char *path, double from_s, double seconds, GError **error)
@@ -245,21 +230,12 @@ int fl_ffmpeg_sound(const char *path, double from_s, double seconds, GError **er
 
 double fl_ffmpeg_rate(const char *path)
 {
-    g_autofree char *url = file_url(path);
-    const char *const args[] = {"ffprobe",
-                                "-v",
-                                "error",
-                                "-protocol_whitelist",
-                                "file",
-                                "-select_streams",
-                                "v:0",
-                                "-show_entries",
-                                "stream=avg_frame_rate",
-                                "-of",
-                                "default=noprint_wrappers=1:nokey=1",
-                                url,
-                                NULL};
-    g_autoptr(FlChild) child = fl_child_start_reader(args, path, NULL);
+    g_autoptr(GPtrArray) arguments =
+        arguments_for("ffprobe -v error -protocol_whitelist file -select_streams v:0 -show_entries "
+                      "stream=avg_frame_rate -of default=noprint_wrappers=1:nokey=1",
+                      path, "");
+    g_autoptr(FlChild) child =
+        fl_child_start_reader((const char *const *)arguments->pdata, path, NULL);
     char out[64] = "";
     size_t got;
     int above = 0, below = 0;

@@ -58,40 +58,32 @@ static const Codec *codec_of(const FlSinkFormat *format)
     return codec;
 }
 
-static void add_words(GPtrArray *arguments, const char *words)
-{
-    g_auto(GStrv) parts = g_strsplit(words, " ", -1);
-    for (char **part = parts; *part; part++)
-        if (**part)
-            g_ptr_array_add(arguments, g_strdup(*part));
-}
-
 /** -xerror: else ffmpeg reports success although the disk was full at the end. */
 static void add_input(GPtrArray *arguments, const FlSinkParams *params)
 {
     char fps[G_ASCII_DTOSTR_BUF_SIZE];
     g_ascii_formatd(fps, sizeof fps, "%.6f", params->fps);
-    add_words(arguments,
-              "ffmpeg -hide_banner -loglevel error -xerror -y -f rawvideo -pixel_format rgba");
+    fl_arguments_add(
+        arguments, "ffmpeg -hide_banner -loglevel error -xerror -y -f rawvideo -pixel_format rgba");
     g_ptr_array_add(arguments, g_strdup("-video_size"));
     g_ptr_array_add(arguments, g_strdup_printf("%dx%d", params->width, params->height));
     g_ptr_array_add(arguments, g_strdup("-framerate"));
     g_ptr_array_add(arguments, g_strdup(fps));
-    add_words(arguments, "-i pipe:0");
+    fl_arguments_add(arguments, "-i pipe:0");
 }
 
 /** ffmpeg opens our file without a name. */
 static void add_sound(GPtrArray *arguments, const Codec *codec, int sound)
 {
     if (sound < 0) {
-        add_words(arguments, "-an");
+        fl_arguments_add(arguments, "-an");
         return;
     }
-    add_words(arguments, "-f s16le -ar " G_STRINGIFY(FL_SOUND_RATE) " -ac " G_STRINGIFY(
-                             FL_SOUND_CHANNELS) " -i");
+    fl_arguments_add(arguments, "-f s16le -ar " G_STRINGIFY(FL_SOUND_RATE) " -ac " G_STRINGIFY(
+                                    FL_SOUND_CHANNELS) " -i");
     g_ptr_array_add(arguments, g_strdup_printf("file:/proc/%d/fd/%d", (int)getpid(), sound));
-    add_words(arguments, "-map 0:v -map 1:a -flags:a +bitexact");
-    add_words(arguments, codec->sound);
+    fl_arguments_add(arguments, "-map 0:v -map 1:a -flags:a +bitexact");
+    fl_arguments_add(arguments, codec->sound);
 }
 
 /**
@@ -108,7 +100,7 @@ static void add_colour(GPtrArray *arguments, const Codec *codec)
         g_ptr_array_add(arguments, g_strdup("-vf"));
         g_ptr_array_add(arguments, g_strconcat(codec->with_alpha ? "" : even, convert, NULL));
     }
-    add_words(arguments, "-fflags +bitexact -flags:v +bitexact");
+    fl_arguments_add(arguments, "-fflags +bitexact -flags:v +bitexact");
 }
 
 /**
@@ -121,15 +113,15 @@ static FlChild *start_ffmpeg(const FlSink *sink, int sound, GError **error)
     g_autoptr(GPtrArray) arguments = g_ptr_array_new_with_free_func(g_free);
     add_input(arguments, &sink->params);
     add_sound(arguments, codec, sound);
-    add_words(arguments, sink->params.opaque ? codec->without_alpha : codec->with_alpha);
+    fl_arguments_add(arguments, sink->params.opaque ? codec->without_alpha : codec->with_alpha);
     add_colour(arguments, codec);
     if (sink->mark) {
-        add_words(arguments, "-metadata");
+        fl_arguments_add(arguments, "-metadata");
         g_ptr_array_add(arguments, g_strconcat("comment=", sink->mark, NULL));
     }
-    add_words(arguments, "-f");
+    fl_arguments_add(arguments, "-f");
     g_ptr_array_add(arguments, g_strdup(codec->muxer));
-    add_words(arguments, "file:" FL_CHILD_FILE);
+    fl_arguments_add(arguments, "file:" FL_CHILD_FILE);
     g_ptr_array_add(arguments, NULL);
     const int fd = open(sink->file.temporary, O_RDWR | O_CLOEXEC);
     if (fd < 0) {
