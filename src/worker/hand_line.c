@@ -241,44 +241,6 @@ static const FlLinePath *approach(const FlHandLine *hand, guint k, float reach,
     return path;
 }
 
-/* ---- lines ----------------------------------------------------------------------------------- */
-
-/** Of several subpaths the one counts that leaves most. Takes the places back for the next. */
-static void draw_path(const FlHandLine *hand, const FlLinePath *path, FlRect part, Nearest *nearest,
-                      int16_t *share)
-{
-    for (int y = part.y; y < part.y + part.height; y++)
-        for (int x = part.x; x < part.x + part.width; x++) {
-            const size_t i = place_in(nearest->box, x, y);
-            if (nearest->square[i] == FAR)
-                continue;
-            const int left = (int)(255 * line_pixel(hand, path, nearest, x, y) + .5f);
-            share[i] = (int16_t)MAX(share[i], left);
-            nearest->square[i] = FAR;
-        }
-}
-
-static bool draw_lines(const FlHandLine *hand, FlRect box, uint8_t *coverage, GError **error)
-{
-    const size_t n = fl_rect_pixels(box);
-    const float reach = MITRE * hand->paths->unit_px / 2 + 1;
-    g_auto(Nearest) nearest = {0};
-    g_autofree int16_t *share = fl_alloc(n, sizeof *share, "a line", error);
-    if (!share || !nearest_init(&nearest, box, error))
-        return false;
-    memset(share, -1, n * sizeof *share); // -1: no path is near, and it stays as it was drawn
-    for (guint k = 0; k < hand->paths->path->len; k++) {
-        FlHandLine own;
-        FlRect part;
-        const FlLinePath *path = approach(hand, k, reach, coverage, &nearest, &own, &part);
-        draw_path(&own, path, part, &nearest, share);
-    }
-    for (size_t i = 0; i < n; i++)
-        if (share[i] >= 0)
-            coverage[i] = (uint8_t)((coverage[i] * share[i] + 127) / 255);
-    return true;
-}
-
 /* ---- flat shapes ----------------------------------------------------------------------------- */
 
 /** True if the place on the outline next to a pixel is an edge: outlines may run inside a shape. */
@@ -342,20 +304,6 @@ static float edge_pixel(const FlHandLine *hand, const FlLinePath *path, const Ne
     return is_edge(nearest, coverage, &foot) ? fminf(left / whole, 1) : 1;
 }
 
-/** Takes the places back for the next subpath. */
-static void draw_edge(const FlHandLine *hand, const FlLinePath *path, FlRect part,
-                      const Nearest *nearest, const uint8_t *coverage, float *share)
-{
-    for (int y = part.y; y < part.y + part.height; y++)
-        for (int x = part.x; x < part.x + part.width; x++) {
-            const size_t i = place_in(nearest->box, x, y);
-            if (nearest->square[i] == FAR)
-                continue;
-            share[i] = fminf(share[i], edge_pixel(hand, path, nearest, coverage, i));
-            nearest->square[i] = FAR;
-        }
-}
-
 /** Grain within a shape lies in the shape's own coordinates. */
 static float shape_deposit(const FlHandLine *hand, int x, int y)
 {
@@ -368,9 +316,29 @@ static float shape_deposit(const FlHandLine *hand, int x, int y)
     return deposit(hand, load, grain_at(hand, &endless, (float)p.x, (float)p.y, streak), x, y);
 }
 
-static bool draw_shape(const FlHandLine *hand, FlRect box, uint8_t *coverage, GError **error)
+/* ---- drawing --------------------------------------------------------------------------------- */
+
+/** Of several subpaths of a line the one counts that leaves most, of a shape that which leaves
+ * least. Takes the places back for the next. */
+static void draw_path(const FlHandLine *hand, const FlLinePath *path, FlRect part, Nearest *nearest,
+                      const uint8_t *coverage, float *share)
 {
-    const float reach = FILL_EDGE_PX * hand->page + 1.5f, detail = detail_of(hand);
+    for (int y = part.y; y < part.y + part.height; y++)
+        for (int x = part.x; x < part.x + part.width; x++) {
+            const size_t i = place_in(nearest->box, x, y);
+            if (nearest->square[i] == FAR)
+                continue;
+            share[i] = hand->fill ? fminf(share[i], edge_pixel(hand, path, nearest, coverage, i))
+                                  : fmaxf(share[i], line_pixel(hand, path, nearest, x, y));
+            nearest->square[i] = FAR;
+        }
+}
+
+bool fl_hand_line_draw(const FlHandLine *hand, FlRect box, uint8_t *coverage, GError **error)
+{
+    const float reach =
+        hand->fill ? FILL_EDGE_PX * hand->page + 1.5f : MITRE * hand->paths->unit_px / 2 + 1;
+    const float detail = hand->fill ? detail_of(hand) : 1;
     const size_t n = fl_rect_pixels(box);
     if (detail <= 0)
         return true;
@@ -379,80 +347,36 @@ static bool draw_shape(const FlHandLine *hand, FlRect box, uint8_t *coverage, GE
     if (!share || !nearest_init(&nearest, box, error))
         return false;
     for (size_t i = 0; i < n; i++)
-        share[i] = 1;
+        share[i] = hand->fill ? 1 : -1; // -1: no path is near, and it stays as it was drawn
     for (guint k = 0; k < hand->paths->path->len; k++) {
         FlHandLine own;
         FlRect part;
         const FlLinePath *path = approach(hand, k, reach, coverage, &nearest, &own, &part);
-        draw_edge(&own, path, part, &nearest, coverage, share);
+        draw_path(&own, path, part, &nearest, coverage, share);
     }
     for (int y = box.y; y < box.y + box.height; y++)
         for (int x = box.x; x < box.x + box.width; x++) {
             const size_t i = place_in(box, x, y);
-            if (!coverage[i])
+            if (!coverage[i] || share[i] < 0)
                 continue;
-            const float left = share[i] * shape_deposit(hand, x, y);
+            const float left = share[i] * (hand->fill ? shape_deposit(hand, x, y) : 1);
             coverage[i] = (uint8_t)((float)coverage[i] * (1 - detail + detail * left) + .5f);
         }
     return true;
 }
 
-bool fl_hand_line_draw(const FlHandLine *hand, FlRect box, uint8_t *coverage, GError **error)
-{
-    return hand->fill ? draw_shape(hand, box, coverage, error)
-                      : draw_lines(hand, box, coverage, error);
-}
-
 /* ---- tools ----------------------------------------------------------------------------------- */
 
 static const FlLineKind kinds[] = {
+    // in the order of the type's fields
     // Ink from a nib: dark and sharp, a little thinner where the hand is fast.
-    [FL_LINE_PEN] = {.play = .30f,
-                     .wave = 9,
-                     .rough = .08f,
-                     .rough_wave = 1.6f,
-                     .load = 1.16f,
-                     .load_play = .24f,
-                     .load_wave = 13,
-                     .grain = .08f,
-                     .grain_px = 2.4f,
-                     .streak = 1,
-                     .tooth = .06f,
-                     .taper = 3,
-                     .tip = .35f,
-                     .opacity = 1},
+    [FL_LINE_PEN] = {.30f, 9, .08f, 1.6f, 1.16f, .24f, 13, 0, .08f, 2.4f, 1, .06f, 3, .35f, 1},
     // Graphite: catches on the paper, greyer where the hand is light, with soft sides.
-    [FL_LINE_PENCIL] = {.play = .18f,
-                        .wave = 11,
-                        .rough = .16f,
-                        .rough_wave = 1.1f,
-                        .load = .98f,
-                        .load_play = .30f,
-                        .load_wave = 7,
-                        .soft = .30f,
-                        .grain = .14f,
-                        .grain_px = 1.9f,
-                        .streak = 1,
-                        .tooth = .11f,
-                        .taper = 2.5f,
-                        .tip = .5f,
-                        .opacity = .92f},
+    [FL_LINE_PENCIL] = {.18f, 11, .16f, 1.1f, .98f, .30f, 7, .30f, .14f, 1.9f, 1, .11f, 2.5f, .5f,
+                        .92f},
     // A pointed brush: swells and thins, ends in points, and streaks where it runs dry.
-    [FL_LINE_BRUSH] = {.play = .50f,
-                       .wave = 12,
-                       .rough = .12f,
-                       .rough_wave = 2.5f,
-                       .load = 1.25f,
-                       .load_play = .55f,
-                       .load_wave = 16,
-                       .soft = .15f,
-                       .grain = .30f,
-                       .grain_px = 2.6f,
-                       .streak = 9,
-                       .tooth = .12f,
-                       .taper = 5,
-                       .tip = .12f,
-                       .opacity = .97f},
+    [FL_LINE_BRUSH] = {.50f, 12, .12f, 2.5f, 1.25f, .55f, 16, .15f, .30f, 2.6f, 9, .12f, 5, .12f,
+                       .97f},
 };
 
 const FlLineKind *fl_line_kind(FlLine line)
