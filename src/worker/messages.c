@@ -24,15 +24,6 @@ static bool is_bool(const bool *value)
 
 /* ---- requests -------------------------------------------------------------------------------- */
 
-/** The fields of a request that hold no pointer. */
-typedef struct PlainRequest {
-    FlCanvas canvas;
-    FlPageSize page;
-    FlMoments moments;
-    double dpi, scale, seconds;
-    int number, frame, from, layer, width, height, n_regions, shapes;
-} PlainRequest;
-
 /** The fields of a hand that hold no pointer. */
 typedef struct PlainHand {
     uint64_t seed;
@@ -53,13 +44,8 @@ static void put_hand(GByteArray *out, const FlRequest *r)
 
 void fl_request_pack(const FlRequest *r, GByteArray *out)
 {
-    const PlainRequest plain = {r->svg.canvas,    r->page,        r->moments, r->svg.dpi,
-                                r->scale,         r->svg.seconds, r->number,  r->frame,
-                                (int)r->svg.from, r->svg.layer,   r->width,   r->height,
-                                r->n_regions,     r->shapes};
-    fl_put_int(out, (int)r->verb);
+    fl_put(out, r, sizeof *r); // of its pointers the copies are not used
     fl_put_text(out, r->file);
-    fl_put(out, &plain, sizeof plain);
     fl_put_texts(out, r->svg.whole);
     fl_put_items(out, r->step, r->n_steps, sizeof *r->step);
     fl_put_int(out, r->hand != NULL);
@@ -104,27 +90,17 @@ static bool is_time(double seconds)
 
 bool fl_request_unpack(FlReader *reader, FlRequest *r, FlHand *hand)
 {
-    PlainRequest plain;
-    *r = (FlRequest){.verb = (FlVerb)fl_take_in(reader, 0, FL_N_VERBS - 1)};
+    fl_reader_copy(reader, r, sizeof *r);
+    r->svg.whole = NULL, r->step = NULL, r->hand = NULL, r->key = NULL;
     *hand = (FlHand){0};
     r->file = fl_take_text(reader);
-    fl_reader_copy(reader, &plain, sizeof plain);
-    fl_take_check(reader, is_side(plain.width) && is_side(plain.height) && plain.n_regions >= 0 &&
-                              plain.n_regions <= INT16_MAX);
-    r->number = plain.number, r->frame = plain.frame;
-    fl_take_check(reader, plain.from >= 0 && plain.from <= FL_FRAMES_TIME &&
-                              is_time(plain.seconds) && is_time(plain.moments.from) &&
-                              is_time(plain.moments.to) && plain.moments.fps >= 0 &&
-                              plain.moments.fps <= 1000);
-    r->page = plain.page, r->scale = plain.scale, r->moments = plain.moments;
-    r->width = plain.width, r->height = plain.height;
-    r->n_regions = plain.n_regions, r->shapes = plain.shapes != 0;
-    r->svg = (FlSvgOptions){.canvas = plain.canvas,
-                            .dpi = plain.dpi,
-                            .from = (FlFramesFrom)plain.from,
-                            .layer = plain.layer,
-                            .seconds = plain.seconds,
-                            .whole = (const char *const *)fl_take_texts(reader)};
+    fl_take_check(reader, (unsigned)r->verb < FL_N_VERBS && is_side(r->width) &&
+                              is_side(r->height) && is_bool(&r->shapes) && r->n_regions >= 0 &&
+                              r->n_regions <= INT16_MAX &&
+                              (unsigned)r->svg.from <= FL_FRAMES_TIME && is_time(r->svg.seconds) &&
+                              is_time(r->moments.from) && is_time(r->moments.to) &&
+                              r->moments.fps >= 0 && r->moments.fps <= 1000);
+    r->svg.whole = (const char *const *)fl_take_texts(reader);
     r->step = fl_take_items(reader, sizeof *r->step, &r->n_steps);
     for (int i = 0; i < r->n_steps; i++)
         fl_take_check(reader, r->step[i].region >= 0 && r->step[i].region < r->n_regions);
