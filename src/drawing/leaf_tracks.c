@@ -159,8 +159,7 @@ static void pair_alike(Follow *f, int t, float least)
         }
     }
     g_array_sort(pairs, compare_pairs);
-    for (guint p = 0; p < pairs->len; p++) {
-        const Pair *pair = &g_array_index(pairs, Pair, p);
+    FL_EACH (const Pair, pair, pairs) {
         FlSurveyPart *s = &g_array_index(parts, FlSurveyPart, pair->part);
         if (s->nth < 0 && g_array_index(f->tracks, FlTrack, pair->track).last_frame < t)
             follow_on(f, t, s, pair->track);

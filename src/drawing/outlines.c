@@ -50,8 +50,7 @@ FlLeafFill *fl_drawing_leaf_fills(const FlDrawing *drawing, int frame, const FlO
     for (int i = 0; i < f->n; i++) {
         g_array_set_size(list, 0);
         add_leaves(&f->step[i], outlines, list);
-        for (guint k = 0; k < list->len; k++) {
-            const FlRegionLeaf *leaf = &g_array_index(list, FlRegionLeaf, k);
+        FL_EACH (const FlRegionLeaf, leaf, list) {
             if (fill[leaf->leaf].region < 0)
                 fill[leaf->leaf] = (FlLeafFill){f->step[i].region,
                                                 f->step[i].nth,

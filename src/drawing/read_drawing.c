@@ -253,8 +253,7 @@ static void find_class_words(FlDrawing *drawing, const FlSurvey *survey)
     g_autofree int *n_parts = g_new0(int, drawing->regions->len + 1);
     g_autoptr(GHashTable) wearers = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
     for (int t = 0; t < survey->n_frames; t++)
-        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
-            const FlSurveyPart *s = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
+        FL_EACH (const FlSurveyPart, s, survey->frame[t].parts) {
             if (s->region >= 0)
                 n_parts[s->region]++;
             if (s->classes)
@@ -282,8 +281,7 @@ static void measure(FlDrawing *drawing, const FlSurvey *survey)
     g_autofree int *leaves = g_new(int, n + 1);
     for (int t = 0; t < survey->n_frames; t++) {
         memset(leaves, 0, n * sizeof *leaves);
-        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
-            const FlSurveyPart *s = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
+        FL_EACH (const FlSurveyPart, s, survey->frame[t].parts) {
             if (s->region < 0)
                 continue;
             leaves[s->region]++;
@@ -416,8 +414,7 @@ static void remember(FlDrawing *drawing, FlSurvey *survey)
             g_hash_table_add(drawing->files, g_strdup(survey->frame[t].files[i]));
         frame->whole = g_steal_pointer(&survey->frame[t].whole);
         frame->step = g_new0(FlDrawStep, parts->len + 1);
-        for (guint i = 0; i < parts->len; i++) {
-            const FlSurveyPart *s = &g_array_index(parts, FlSurveyPart, i);
+        FL_EACH (const FlSurveyPart, s, parts) {
             if (s->region < 0)
                 continue;
             FlDrawStep *step = &frame->step[frame->n++];

@@ -277,11 +277,9 @@ static void choose_limbs(Leaf *leaf, int n, double least)
 static void count_leaves(Follower *f, const FlSurvey *survey, int n_leaves)
 {
     for (int t = 0; t < survey->n_frames; t++)
-        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
-            const FlSurveyPart *part = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
+        FL_EACH (const FlSurveyPart, part, survey->frame[t].parts)
             if (part->region >= 0)
                 count_leaf(f, t, part);
-        }
     for (int k = 0; k < n_leaves; k++)
         f->leaf[k].part = NULL;
     const double side = LIMB_PX * (double)MAX(f->page[0], f->page[1]);
@@ -391,8 +389,7 @@ static void follow(Follower *f, int t, const GArray *parts, FlAnchor *anchor, GA
 {
     for (int r = 0; r < f->n_regions; r++)
         f->region[r].fit = (Fit){{0}};
-    for (guint i = 0; i < parts->len; i++) {
-        const FlSurveyPart *part = &g_array_index(parts, FlSurveyPart, i);
+    FL_EACH (const FlSurveyPart, part, parts) {
         if (part->region < 0)
             continue;
         note_leaf(f, t, part);
@@ -412,11 +409,9 @@ static int number_leaves(const FlSurvey *survey, int n_regions, Region *region)
 {
     g_autofree int *n = g_new0(int, n_regions + 1);
     for (int t = 0; t < survey->n_frames; t++)
-        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
-            const FlSurveyPart *part = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
+        FL_EACH (const FlSurveyPart, part, survey->frame[t].parts)
             if (part->region >= 0)
                 n[part->region] = MAX(n[part->region], part->nth + 1);
-        }
     int all = 0;
     for (int r = 0; r < n_regions; r++) {
         region[r].first = all;

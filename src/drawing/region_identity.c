@@ -52,8 +52,7 @@ static GHashTable *find_near_paints(const FlSurvey *survey)
     g_autoptr(GArray) firsts = g_array_new(FALSE, FALSE, sizeof(FlSurveyPart));
     GHashTable *joined = g_hash_table_new(NULL, NULL);
     for (int t = 0; t < survey->n_frames; t++)
-        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
-            const FlSurveyPart *s = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
+        FL_EACH (const FlSurveyPart, s, survey->frame[t].parts) {
             gpointer key = GINT_TO_POINTER(s->paint);
             if (s->kind == FL_PAINT_FLAT && !g_hash_table_contains(joined, key))
                 g_hash_table_insert(joined, key, GINT_TO_POINTER(first_like(firsts, s)));
@@ -75,8 +74,7 @@ static void join_near_paints(Work *w)
     for (int t = 0; t < w->survey->n_frames; t++)
         for (guint i = 0; i < w->survey->frame[t].parts->len; i++)
             join_paint(joined, &g_array_index(w->survey->frame[t].parts, FlSurveyPart, i).paint);
-    for (guint k = 0; k < w->tracks->len; k++) {
-        FlTrack *track = &g_array_index(w->tracks, FlTrack, k);
+    FL_EACH (FlTrack, track, w->tracks) {
         track->varies = false;
         for (guint i = 1; i < track->paints->len; i += 2) {
             int *paint = &g_array_index(track->paints, int, i);
@@ -92,11 +90,9 @@ static bool is_line_art(const FlSurvey *survey)
     double strokes = 0, fills = 0;
     const double page = (double)survey->width * survey->height;
     for (int t = 0; t < survey->n_frames; t++)
-        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
-            const FlSurveyPart *s = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
+        FL_EACH (const FlSurveyPart, s, survey->frame[t].parts)
             if (s->area_px < 0.95 * page)
                 *(s->stroke ? &strokes : &fills) += s->area_px;
-        }
     return strokes > LINE_ART * (strokes + fills);
 }
 
@@ -119,8 +115,7 @@ static void match_rules(Work *w)
 {
     const FlStrings *strings = &w->survey->strings;
     for (int t = 0; t < w->survey->n_frames && w->options->n_rules > 0; t++)
-        for (guint i = 0; i < w->survey->frame[t].parts->len; i++) {
-            const FlSurveyPart *s = &g_array_index(w->survey->frame[t].parts, FlSurveyPart, i);
+        FL_EACH (const FlSurveyPart, s, w->survey->frame[t].parts) {
             const FlRuleSubject subject = {
                 .ids = fl_strings_get(strings, s->ids),
                 .classes = fl_strings_get(strings, s->classes),
@@ -145,8 +140,7 @@ static void find_hairs_and_limbs(Work *w)
     const FlSurvey *survey = w->survey;
     const double hair = HAIRLINE * MAX(survey->page.width, survey->page.height);
     for (int t = 0; t < survey->n_frames; t++)
-        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
-            const FlSurveyPart *s = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
+        FL_EACH (const FlSurveyPart, s, survey->frame[t].parts) {
             FlTrack *track = track_at(w, s->nth);
             track->is_hair &= s->width > 0 && (double)s->width < hair;
             track->is_limb |= s->thick;
@@ -276,8 +270,7 @@ static void number_tracks(const Work *w, guint n_regions)
     g_autofree int *nth = g_new(int, w->tracks->len + 1);
     memset(nth, -1, w->tracks->len * sizeof *nth);
     for (int t = 0; t < w->survey->n_frames; t++)
-        for (guint i = 0; i < w->survey->frame[t].parts->len; i++) {
-            FlSurveyPart *s = &g_array_index(w->survey->frame[t].parts, FlSurveyPart, i);
+        FL_EACH (FlSurveyPart, s, w->survey->frame[t].parts) {
             int *number = &nth[s->nth];
             if (s->region < 0)
                 continue;
@@ -295,8 +288,7 @@ static GArray *gather(Work *w)
     g_autoptr(GHashTable) areas =
         g_hash_table_new_full(g_int64_hash, g_int64_equal, g_free, g_free);
     for (int t = 0; t < w->survey->n_frames; t++)
-        for (guint i = 0; i < w->survey->frame[t].parts->len; i++) {
-            FlSurveyPart *s = &g_array_index(w->survey->frame[t].parts, FlSurveyPart, i);
+        FL_EACH (FlSurveyPart, s, w->survey->frame[t].parts) {
             const int rule = track_at(w, s->nth)->rule;
             if (s->stroke && w->options->strokes == FL_STROKES_DROP && rule < 0)
                 continue;

@@ -7,8 +7,7 @@
 
 static bool is_paint_word(const char *text)
 {
-    static const char *const words[] = {"any", "none", "gradient", "image", "mixed", NULL};
-    return g_strv_contains(words, text);
+    return fl_css_has_word("any none gradient image mixed", text);
 }
 
 static bool check_colours(const FlRule *rule, const char *key, const char *const *list,

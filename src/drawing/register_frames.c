@@ -50,8 +50,7 @@ static Known *nearest(const GArray *known, const FlShape *shape, double *away)
 {
     Known *found = NULL;
     *away = INFINITY;
-    for (guint i = 0; i < known->len; i++) {
-        Known *k = &g_array_index(known, Known, i);
+    FL_EACH (Known, k, known) {
         const double d = hypot(k->shape.x - shape->x, k->shape.y - shape->y);
         if (!k->here && is_same(&k->shape, shape) && d < *away)
             found = k, *away = d;
@@ -100,8 +99,7 @@ static Vote decide(GArray *votes)
     for (guint i = 0; i < MIN(votes->len, MOST_CANDIDATES); i++) {
         const Vote *candidate = &g_array_index(votes, Vote, i);
         Vote sum = {0};
-        for (guint j = 0; j < votes->len; j++) {
-            const Vote *vote = &g_array_index(votes, Vote, j);
+        FL_EACH (const Vote, vote, votes) {
             if (!agree(candidate, vote))
                 continue;
             sum.x += vote->x * vote->weight, sum.y += vote->y * vote->weight;
@@ -118,8 +116,7 @@ static Vote decide(GArray *votes)
 /** Widens the page, in the first frame's units, by the shapes of a frame that lies at x, y. */
 static void widen(FlCanvas *page, const GArray *shapes, double x, double y, bool *any)
 {
-    for (guint i = 0; i < shapes->len; i++) {
-        const FlShape *box = &g_array_index(shapes, FlShape, i);
+    FL_EACH (const FlShape, box, shapes) {
         const double x0 = floor(box->x + x), x1 = ceil(box->x + x + box->width);
         const double y0 = floor(box->y + y), y1 = ceil(box->y + y + box->height);
         if (!*any)

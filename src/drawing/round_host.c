@@ -97,17 +97,14 @@ static void observe_detail(GArray *rows, const Work *w, const Disc *disc, int i)
 static bool solve(const GArray *rows, double p[FL_MODES])
 {
     FlLeastSquares sum = {0};
-    for (guint i = 0; i < rows->len; i++) {
-        const Row *r = &g_array_index(rows, Row, i);
+    FL_EACH (const Row, r, rows)
         fl_least_squares_add(&sum, r->row, r->value, r->weight);
-    }
     for (int k = 0; k < FL_MODES; k++)
         fl_least_squares_ridge(&sum, k, k < 3 ? FIRM : RIDGE);
     if (!fl_least_squares_solve(&sum, p))
         return false;
     double energy = 0, weight = 0;
-    for (guint i = 0; i < rows->len; i++) {
-        const Row *r = &g_array_index(rows, Row, i);
+    FL_EACH (const Row, r, rows) {
         double e = -r->value;
         for (int k = 0; k < FL_MODES; k++)
             e += r->row[k] * p[k];

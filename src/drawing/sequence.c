@@ -79,8 +79,7 @@ static char *suggestion(GPtrArray *names, const char *wanted)
     g_autoptr(GArray) groups = group_names(names);
     g_autofree char *best = NULL;
     int best_distance = G_MAXINT, best_n = 0;
-    for (guint i = 0; i < groups->len; i++) {
-        const Group *group = &g_array_index(groups, Group, i);
+    FL_EACH (const Group, group, groups) {
         g_autofree char *text = fl_pattern_text(&group->pattern);
         const int distance = fl_edit_distance(wanted, text);
         if (distance < best_distance) {
@@ -365,8 +364,7 @@ static bool no_number_twice(const GArray *found, GError **error)
 static const FlSequenceFrame *look_up(const GArray *found, int number, bool hold)
 {
     const FlSequenceFrame *before = NULL;
-    for (guint i = 0; i < found->len; i++) {
-        const FlSequenceFrame *f = &g_array_index(found, FlSequenceFrame, i);
+    FL_EACH (const FlSequenceFrame, f, found) {
         if (f->number == number)
             return f;
         if (f->number > number)

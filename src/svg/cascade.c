@@ -62,12 +62,14 @@ static void warn_of_value(Cascade *c, const FlCssProperty *property, const char 
 /** The property that a name of WebKit stands for, or one that is a part of another. */
 static const char *usual_name(const char *name, const char *value)
 {
-    static const char *const same[] = {
-        "transform", "transform-origin", "transform-box", "clip-path", "mask", "filter", NULL};
     const char *plain = g_str_has_prefix(name, "-webkit-") ? name + 8 : name;
     if (strcmp(plain, "mask-image") == 0 && g_str_has_prefix(value, "url("))
         return g_intern_static_string("mask");
-    return plain != name && g_strv_contains(same, plain) ? g_intern_string(plain) : name;
+    return plain != name &&
+                   fl_css_has_word("transform transform-origin transform-box clip-path mask filter",
+                                   plain)
+               ? g_intern_string(plain)
+               : name;
 }
 
 /** Warns if a value of `animation` names keyframes. */
@@ -148,11 +150,9 @@ static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d)
 
 static void declare_all(Cascade *c, GArray *values, const GArray *declarations, bool important)
 {
-    for (guint i = 0; i < declarations->len; i++) {
-        const FlCssDeclaration *d = &g_array_index(declarations, FlCssDeclaration, i);
+    FL_EACH (const FlCssDeclaration, d, declarations)
         if (d->important == important)
             declare(c, values, d);
-    }
 }
 
 static void add_matches(Cascade *c, const xmlNode *node, const char *sigil, const char *name,
@@ -232,8 +232,7 @@ static const char *find_variable(const void *data, const char *name)
 /** Sets the custom properties of an element; "" stands for one that is not set. */
 static void set_variables(Style *style, const GArray *values)
 {
-    for (guint i = 0; i < values->len; i++) {
-        const Value *v = &g_array_index(values, Value, i);
+    FL_EACH (const Value, v, values) {
         if (v->property || strcmp(v->text, "inherit") == 0 || strcmp(v->text, "unset") == 0)
             continue;
         if (!style->variables)
@@ -254,20 +253,16 @@ static void set_variables(Style *style, const GArray *values)
 /** Lengths in units that librsvg knows stay as they are, which keeps percentages exact. */
 static bool is_plain_length(const char *text)
 {
-    static const char *const units[] = {"",   "px", "%",  "em", "ex", "in",
-                                        "cm", "mm", "pt", "pc", NULL};
     char *end;
     g_ascii_strtod(text, &end);
-    return end != text && g_strv_contains(units, end);
+    return end != text && (!*end || fl_css_has_word("px % em ex in cm mm pt pc", end));
 }
 
 static double whole_of(const char *name, const FlCssUnits *units)
 {
-    static const char *const across[] = {"x", "width", "cx", "rx", "x1", "x2", NULL};
-    static const char *const down[] = {"y", "height", "cy", "ry", "y1", "y2", NULL};
-    return g_strv_contains(across, name)    ? units->width
-           : g_strv_contains(down, name)    ? units->height
-           : strcmp(name, "font-size") == 0 ? units->font_size
+    return fl_css_has_word("x width cx rx x1 x2", name)    ? units->width
+           : fl_css_has_word("y height cy ry y1 y2", name) ? units->height
+           : strcmp(name, "font-size") == 0                ? units->font_size
                                             : hypot(units->width, units->height) / G_SQRT2;
 }
 
@@ -420,8 +415,7 @@ static bool animate(Cascade *c, const xmlNode *node, GArray *values, const Style
     g_autoptr(FlCssAnimations) animations = NULL;
     g_autoptr(GPtrArray) attributes = g_ptr_array_new_with_free_func(xmlFree);
     Animated animated = {c, node, values, owned, attributes};
-    for (guint i = 0; i < values->len; i++) {
-        const Value *v = &g_array_index(values, Value, i);
+    FL_EACH (const Value, v, values) {
         if (!v->property || v->property->kind != FL_CSS_ANIMATION)
             continue;
         char *text = fl_css_substitute(v->text, find_variable, style);
@@ -588,8 +582,7 @@ static GHashTable *index_rules(const GArray *rules)
 {
     GHashTable *index =
         g_hash_table_new_full(g_str_hash, g_str_equal, NULL, (GDestroyNotify)g_ptr_array_unref);
-    for (guint i = 0; i < rules->len; i++) {
-        FlCssRule *rule = &g_array_index(rules, FlCssRule, i);
+    FL_EACH (FlCssRule, rule, rules) {
         gpointer key = (gpointer)rule->selector->key;
         if (!g_hash_table_contains(index, key))
             g_hash_table_insert(index, key, g_ptr_array_new());

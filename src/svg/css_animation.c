@@ -58,13 +58,12 @@ static Longhand longhand_of(const char *word, char *const *taken)
         Longhand longhand;
         const char *words;
     } known[] = {
-        {TIMING, " linear ease ease-in ease-out ease-in-out step-start step-end "},
-        {COUNT, " infinite "},
-        {DIRECTION, " normal reverse alternate alternate-reverse "},
-        {FILL, " none forwards backwards both "},
-        {STATE, " running paused "},
+        {TIMING, "linear ease ease-in ease-out ease-in-out step-start step-end"},
+        {COUNT, "infinite"},
+        {DIRECTION, "normal reverse alternate alternate-reverse"},
+        {FILL, "none forwards backwards both"},
+        {STATE, "running paused"},
     };
-    g_autofree char *padded = g_strdup_printf(" %s ", word);
     if (is_time(word) || g_str_has_prefix(word, "calc("))
         return taken[DURATION] ? DELAY : DURATION;
     if (strchr(word, '('))
@@ -72,7 +71,7 @@ static Longhand longhand_of(const char *word, char *const *taken)
     if (g_ascii_isdigit(*word) || *word == '.')
         return COUNT;
     for (size_t i = 0; i < G_N_ELEMENTS(known); i++)
-        if (strstr(known[i].words, padded) && !taken[known[i].longhand])
+        if (fl_css_has_word(known[i].words, word) && !taken[known[i].longhand])
             return known[i].longhand;
     return NAME;
 }
@@ -168,8 +167,7 @@ static void add_length(const FlCssAnimations *animations, int i, FlFilmLength *l
 static const char *find(const GArray *declarations, const char *property)
 {
     const char *value = NULL;
-    for (guint i = 0; i < declarations->len; i++) {
-        const FlCssDeclaration *d = &g_array_index(declarations, FlCssDeclaration, i);
+    FL_EACH (const FlCssDeclaration, d, declarations) {
         if (strcmp(d->name, property) == 0 && !d->important) // key frames have no such priority
             value = d->value;
     }
@@ -207,8 +205,7 @@ static char *between(const GArray *frames, const char *property, double p, const
     const char *from = underlying, *to = underlying, *usual = timing;
     double start = 0, end = 1;
     bool has_end = false;
-    for (guint i = 0; i < frames->len; i++) {
-        const FlCssKeyframe *frame = &g_array_index(frames, FlCssKeyframe, i);
+    FL_EACH (const FlCssKeyframe, frame, frames) {
         const char *value = find(frame->declarations, property);
         if (!value)
             continue;

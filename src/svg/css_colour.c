@@ -444,14 +444,13 @@ static bool from_name(const char *text, Rgba *colour)
         {"fieldtext", "000000"},    {"highlight", "b5d5ff"},        {"highlighttext", "000000"},
         {"selecteditem", "0078d7"}, {"selecteditemtext", "ffffff"}, {"mark", "ffff00"},
         {"marktext", "000000"},     {"graytext", "808080"}};
-    static const char *const of_x11[] = {"lightgoldenrod", "lightslateblue", "navyblue",
-                                         "violetred", NULL}; // of Pango's; others have digits
     g_autofree char *lower = g_ascii_strdown(text, -1);
     PangoColor named;
     for (size_t i = 0; i < G_N_ELEMENTS(of_system); i++)
         if (strcmp(lower, of_system[i].name) == 0)
             return from_hex(of_system[i].hex, colour);
-    if (lower[strspn(lower, G_CSET_a_2_z)] || g_strv_contains(of_x11, lower) ||
+    if (lower[strspn(lower, G_CSET_a_2_z)] ||
+        fl_css_has_word("lightgoldenrod lightslateblue navyblue violetred", lower) ||
         !pango_color_parse(&named, lower))
         return false;
     *colour = (Rgba){{named.red / 65535.0, named.green / 65535.0, named.blue / 65535.0}, 1};
@@ -514,12 +513,10 @@ bool fl_css_rgba(const char *text, uint8_t rgba[4])
 
 char *fl_css_colour(const char *text)
 {
-    static const char *const words[] = {"none",         "currentcolor",   "transparent",
-                                        "context-fill", "context-stroke", NULL};
     g_autofree char *bare = g_strstrip(g_strdup(text));
     g_autofree char *lower = g_ascii_strdown(bare, -1);
     Rgba colour;
-    if (g_strv_contains(words, lower))
+    if (fl_css_has_word("none currentcolor transparent context-fill context-stroke", lower))
         return g_strdup(strcmp(lower, "currentcolor") == 0 ? bare : lower);
     if (g_str_has_prefix(lower, "url(")) {
         const char *end = fl_css_find(bare + 4, ")");

@@ -89,67 +89,44 @@ static bool is_size(const FlCssPage *page, const char *name, const char *relatio
 /** A feature without a size: a colour screen in a light scheme, with a mouse. */
 static bool is_word(const FlCssPage *page, const char *name, const char *value)
 {
-    static const char *const have[] = {"prefers-color-scheme:light",
-                                       "prefers-reduced-motion:no-preference",
-                                       "prefers-contrast:no-preference",
-                                       "prefers-reduced-transparency:no-preference",
-                                       "hover:hover",
-                                       "any-hover:hover",
-                                       "pointer:fine",
-                                       "any-pointer:fine",
-                                       "scripting:none",
-                                       "color-gamut:srgb",
-                                       "dynamic-range:standard",
-                                       "forced-colors:none",
-                                       "update:fast",
-                                       "grid:0",
-                                       "display-mode:browser",
-                                       "inverted-colors:none",
-                                       "resolution:1dppx",
-                                       "min-resolution:1dppx",
-                                       "max-resolution:1dppx",
-                                       "scan:progressive",
-                                       NULL};
     g_autofree char *pair = g_strdup_printf("%s:%s", name, value);
     if (strcmp(name, "orientation") == 0)
         return strcmp(value, page->width > page->height ? "landscape" : "portrait") == 0;
-    return g_strv_contains(have, pair);
+    return fl_css_has_word(
+        "prefers-color-scheme:light prefers-reduced-motion:no-preference "
+        "prefers-contrast:no-preference prefers-reduced-transparency:no-preference hover:hover "
+        "any-hover:hover pointer:fine any-pointer:fine scripting:none color-gamut:srgb "
+        "dynamic-range:standard forced-colors:none update:fast grid:0 display-mode:browser "
+        "inverted-colors:none resolution:1dppx min-resolution:1dppx max-resolution:1dppx "
+        "scan:progressive",
+        pair);
 }
 
+/** "color", "min-width: 500px", "width >= 500px" or "400px <= width <= 700px". */
 static bool has_feature(const FlCssPage *page, const char *text)
 {
-    static const char *const flags[] = {"color", "hover",  "any-hover",   "pointer", "any-pointer",
-                                        "width", "height", "color-gamut", "update",  NULL};
-    const char *colon = strchr(text, ':');
-    const char *sign = strpbrk(text, "<>=");
-    if (!colon && !sign)
-        return g_strv_contains(flags, text);
-    const char *at = colon ? colon : sign;
-    g_autofree char *name = g_strstrip(g_strndup(text, (gsize)(at - text)));
-    if (colon) {
-        g_autofree char *value = g_strstrip(g_strdup(colon + 1));
-        const char *bare =
-            g_str_has_prefix(name, "min-") || g_str_has_prefix(name, "max-") ? name + 4 : name;
-        g_autofree char *relation = g_strndup(name, bare == name ? 0 : 3);
-        return is_size(page, bare, relation, value) || is_word(page, name, value);
+    g_autoptr(GRegex) form = g_regex_new("^\\s*(?:([^<>=:]+?)\\s*([<>]=?|=))?\\s*([a-z][a-z-]*)\\s*"
+                                         "(?:([<>]=?|=|:)\\s*(.+?)\\s*)?$",
+                                         G_REGEX_DOTALL, 0, NULL);
+    g_autoptr(GMatchInfo) match = NULL;
+    if (!g_regex_match(form, text, 0, &match))
+        return false;
+    g_autofree char *least = g_match_info_fetch(match, 1), *turned = g_match_info_fetch(match, 2);
+    g_autofree char *name = g_match_info_fetch(match, 3), *relation = g_match_info_fetch(match, 4);
+    g_autofree char *value = g_match_info_fetch(match, 5);
+    const bool compared = relation && *relation;
+    if (!compared && !*turned)
+        return fl_css_has_word(
+            "color hover any-hover pointer any-pointer width height color-gamut update", name);
+    if (compared && *relation == ':') {
+        const bool bound = g_str_has_prefix(name, "min-") || g_str_has_prefix(name, "max-");
+        g_autofree char *word = g_strndup(name, bound ? 3 : 0);
+        return is_size(page, bound ? name + 4 : name, word, value) || is_word(page, name, value);
     }
-    const size_t n = strspn(sign, "<>=");
-    g_autofree char *relation = g_strndup(sign, n);
-    g_autofree char *value = g_strstrip(g_strdup(sign + n));
-    if (g_ascii_isalpha(*name))
-        return is_size(page, name, relation, value);
-    // "400px <= width <= 700px"
-    static const char *const turned[][2] = {
-        {"<", ">"}, {"<=", ">="}, {">", "<"}, {">=", "<="}, {"=", "="}};
-    const char *rest = strpbrk(value, "<>=");
-    g_autofree char *middle =
-        g_strstrip(g_strndup(value, rest ? (gsize)(rest - value) : strlen(value)));
-    g_autofree char *second = rest ? g_strconcat(middle, rest, NULL) : NULL;
-    for (size_t i = 0; i < G_N_ELEMENTS(turned); i++)
-        if (strcmp(relation, turned[i][0]) == 0)
-            return is_size(page, middle, turned[i][1], name) &&
-                   (!second || has_feature(page, second));
-    return false;
+    if (*turned != '=' && *turned)
+        *turned = *turned == '<' ? '>' : '<';
+    return (!*turned || is_size(page, name, turned, least)) &&
+           (!compared || is_size(page, name, relation, value));
 }
 
 static bool test_media(const void *data, const char *text)

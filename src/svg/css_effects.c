@@ -49,10 +49,10 @@ static double stroke_width(const xmlNode *node, const FlCssUnits *units)
 /** The box of a shape's fill, or with its stroke; a group's has no stroke. */
 static bool own_box(const xmlNode *node, const char *kind, const FlCssUnits *units, FlCssBox *box)
 {
-    static const char *const outer[] = {"stroke-box", "border-box", "margin-box", NULL};
     if (!fl_css_fill_box(node, units, box))
         return false;
-    const bool stroked = g_strv_contains(outer, kind) && !fl_is_container(node);
+    const bool stroked =
+        fl_css_has_word("stroke-box border-box margin-box", kind) && !fl_is_container(node);
     const double more = stroked ? stroke_width(node, units) / 2 : 0;
     *box = (FlCssBox){box->x - more, box->y - more, box->width + 2 * more, box->height + 2 * more};
     return true;
@@ -64,12 +64,11 @@ static bool own_box(const xmlNode *node, const char *kind, const FlCssUnits *uni
 static FlCssBox reference_box(GHashTable *effects, const xmlNode *node, const FlCssUnits *units,
                               bool *known)
 {
-    static const char *const own[] = {"fill-box", "content-box", "stroke-box", "border-box", NULL};
     g_autofree char *kind = value_or_attribute(effects, node, "transform-box");
     FlCssBox box = {0, 0, units->width, units->height};
     if (fl_is_root(node))
         box = (FlCssBox){0, 0, units->page_width, units->page_height};
-    else if (kind && g_strv_contains(own, kind))
+    else if (kind && fl_css_has_word("fill-box content-box stroke-box border-box", kind))
         *known = own_box(node, kind, units, &box) || !fl_is(node, "text");
     return box;
 }
@@ -121,8 +120,8 @@ static bool multiply_offset(FlAffine *all, GHashTable *effects, const FlCssUnits
     if (anchor_text && strcmp(anchor_text, "auto") != 0 &&
         !fl_css_position(anchor_text, units, box, &anchor))
         return false;
-    g_autofree char *d = fl_css_basic_shape(path, units, page, &evenodd);
-    if (!d || !fl_css_place_on_path(d, distance ? distance : "0", units, &at, &direction))
+    g_autoptr(FlOutlines) shape = fl_css_basic_shape(path, units, page, &evenodd);
+    if (!shape || !fl_css_place_on(shape, distance ? distance : "0", units, &at, &direction))
         return false;
     g_auto(GStrv) part = fl_css_split(rotate ? rotate : "auto", ' ');
     bool follows = false;
@@ -195,8 +194,9 @@ static xmlNode *add_child(xmlNode *parent, const char *name)
 }
 
 /** Makes a <clipPath> at the end of the document, where it moves no other element's place. */
-static void add_clip(xmlNode *node, const char *d, bool evenodd, int *n_clips)
+static void add_clip(xmlNode *node, const FlOutlines *outlines, bool evenodd, int *n_clips)
 {
+    g_autofree char *d = fl_css_outline_text(outlines, &FL_AFFINE_NONE);
     g_autofree char *id = g_strdup_printf("fl-clip-%d", (*n_clips)++);
     g_autofree char *declaration = g_strdup_printf("clip-path:url(#%s)", id);
     xmlNode *clip = add_child(xmlDocGetRootElement(node->doc), "clipPath");
@@ -211,8 +211,6 @@ static void add_clip(xmlNode *node, const char *d, bool evenodd, int *n_clips)
 static const char *apply_clip(GHashTable *effects, xmlNode *node, const FlCssUnits *units,
                               int *n_clips)
 {
-    static const char *const boxes[] = {"fill-box",    "stroke-box", "border-box", "padding-box",
-                                        "content-box", "margin-box", "view-box",   NULL};
     const char *value = get(effects, "clip-path");
     if (!value)
         return NULL;
@@ -229,17 +227,20 @@ static const char *apply_clip(GHashTable *effects, xmlNode *node, const FlCssUni
     for (int i = 0; part[i]; i++) {
         if (strchr(part[i], '('))
             shape = part[i];
-        else if (g_strv_contains(boxes, part[i]))
+        else if (fl_css_has_word(
+                     "fill-box stroke-box border-box padding-box content-box margin-box view-box",
+                     part[i]))
             kind = part[i];
         else
             return "clip-path";
     }
     if (strcmp(kind, "view-box") != 0 && !own_box(node, kind, units, &box))
         return "clip-path";
-    g_autofree char *d = fl_css_basic_shape(shape ? shape : "inset(0)", units, box, &evenodd);
-    if (!d)
+    g_autoptr(FlOutlines) outlines =
+        fl_css_basic_shape(shape ? shape : "inset(0)", units, box, &evenodd);
+    if (!outlines)
         return "clip-path";
-    add_clip(node, d, evenodd, n_clips);
+    add_clip(node, outlines, evenodd, n_clips);
     return NULL;
 }
 
@@ -247,7 +248,6 @@ static const char *apply_clip(GHashTable *effects, xmlNode *node, const FlCssUni
  * the other words would change the picture; else NULL. */
 static const char *apply_mask(GHashTable *effects, xmlNode *node)
 {
-    static const char *const plain[] = {"luminance", "match-source", "no-clip", "add", NULL};
     const char *value = get(effects, "mask");
     if (!value)
         return NULL;
@@ -255,7 +255,7 @@ static const char *apply_mask(GHashTable *effects, xmlNode *node)
     g_autofree char *declaration = g_strconcat("mask:", part[0] ? part[0] : "none", NULL);
     fl_declare(node, declaration);
     for (int i = 1; part[0] && part[i]; i++)
-        if (!g_strv_contains(plain, part[i]))
+        if (!fl_css_has_word("luminance match-source no-clip add", part[i]))
             return "mask";
     return part[0] && strchr(part[0], '(') && !g_str_has_prefix(part[0], "url(") ? "mask" : NULL;
 }
@@ -424,7 +424,8 @@ static void apply_path_length(xmlNode *node, const FlCssUnits *units)
     double wanted = 0;
     if (!text || !fl_css_number((const char *)text, units, 0, &wanted) || !(wanted > 0))
         return;
-    const double length = fl_css_outline_length(node, units);
+    g_autoptr(FlOutlines) outlines = fl_css_outlines(node, units);
+    const double length = fl_css_outline_length(outlines);
     fl_set_attribute(node, "pathLength", NULL);
     if (length > 0) // a hair more: cairo draws caps of a dash that begins at the end
         scale_stroke(node, dashes, length / wanted * (1 + 1e-4), units);
@@ -433,8 +434,7 @@ static void apply_path_length(xmlNode *node, const FlCssUnits *units)
 /** librsvg takes the colour of a filter's light as one of the space in which the filter works. */
 static void apply_light(xmlNode *node)
 {
-    static const char *const lights[] = {"feDiffuseLighting", "feSpecularLighting", NULL};
-    if (!fl_is_one_of(node, lights))
+    if (!fl_is_one_of(node, "feDiffuseLighting feSpecularLighting"))
         return;
     g_autofree char *space = fl_inherited_property(node, "color-interpolation-filters");
     g_autofree char *colour = fl_property(node, "lighting-color");
@@ -478,7 +478,8 @@ static void keep_stroke(xmlNode *node, const FlAffine *around, const FlAffine *a
     fl_set_attribute(node, "vector-effect", NULL);
     if (!(size > 0))
         return;
-    g_autofree char *d = even ? NULL : fl_css_outline_text(node, units, all);
+    g_autoptr(FlOutlines) outlines = even ? NULL : fl_css_outlines(node, units);
+    g_autofree char *d = even ? NULL : fl_css_outline_text(outlines, all);
     if (!d || !fl_affine_invert(around, &back)) {
         scale_stroke(node, widths, 1 / size, units);
         return;

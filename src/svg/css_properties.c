@@ -81,19 +81,17 @@ char *fl_css_word(const FlCssProperty *property, const char *value)
 
 bool fl_css_is_valid(const FlCssProperty *property, const char *value)
 {
-    static const char *const any[] = {"inherit", "initial",      "unset",
-                                      "revert",  "revert-layer", NULL};
-    static const char *const usual[] = {"auto", "none", "normal", NULL};
     if (!*value)
         return false;
-    if (strstr(value, "var(") || strstr(value, "env(") || g_strv_contains(any, value))
+    if (strstr(value, "var(") || strstr(value, "env(") ||
+        fl_css_has_word("inherit initial unset revert revert-layer", value))
         return true;
     g_autofree char *colour =
         property->kind == FL_CSS_PAINT ? fl_css_colour_with(value, "black") : NULL;
     g_autofree char *word = fl_css_word(property, value);
     if (word || (property->words && property->kind == FL_CSS_TEXT))
         return word != NULL;
-    if (g_strv_contains(usual, value))
+    if (fl_css_has_word("auto none normal", value))
         return true;
     switch (property->kind) {
     case FL_CSS_PAINT:

@@ -9,6 +9,15 @@ const char *fl_css_space(const char *s)
     return s + strspn(s, FL_CSS_SPACE);
 }
 
+bool fl_css_has_word(const char *text, const char *word)
+{
+    const size_t n = strcspn(word, FL_CSS_SPACE);
+    for (const char *at = text; n > 0 && !word[n] && (at = strstr(at, word)); at++)
+        if ((at == text || strchr(FL_CSS_SPACE, at[-1])) && (!at[n] || strchr(FL_CSS_SPACE, at[n])))
+            return true;
+    return false;
+}
+
 /** Skips digits and appends them to a number. Returns: how many there are. */
 static size_t skip_digits(const char **s, uint64_t *number)
 {

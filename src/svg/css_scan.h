@@ -10,6 +10,9 @@
 /** Skips white space. */
 const char *fl_css_space(const char *s);
 
+/** Returns: true if a word is among those of a text, between white space. */
+bool fl_css_has_word(const char *text, const char *word);
+
 /**
  * Finds the first character of `stops` outside strings, escapes and brackets. A closing bracket
  * that was not opened ends the search as well.

@@ -178,8 +178,6 @@ static unsigned largest_specificity(const GPtrArray *list)
 /** A pseudo-class with arguments; false if it is unknown. */
 static bool read_function(const char *name, const char *arguments, Simple *simple, int depth)
 {
-    static const char *const any[] = {"is", "where", "matches", "-webkit-any", "-moz-any", NULL};
-    static const char *const never[] = {"dir", "state", "host", NULL};
     if (g_str_has_prefix(name, "nth-")) {
         if (!read_nth(name, arguments, simple, depth))
             return false;
@@ -191,11 +189,11 @@ static bool read_function(const char *name, const char *arguments, Simple *simpl
         simple->comparison = '|', simple->ignore_case = true, simple->value = g_strdup(arguments);
         return !strpbrk(arguments, "\"',"); // no browser takes them
     }
-    if (g_strv_contains(never, name)) {
+    if (fl_css_has_word("dir state host", name)) {
         simple->kind = SIMPLE_NEVER, simple->specificity = 0x100;
         return true;
     }
-    const bool is_any = g_strv_contains(any, name);
+    const bool is_any = fl_css_has_word("is where matches -webkit-any -moz-any", name);
     if (!is_any && strcmp(name, "not") != 0)
         return false;
     simple->kind = is_any ? SIMPLE_ANY : SIMPLE_NOT;
@@ -224,12 +222,6 @@ static bool read_pseudo_class(const char *name, Simple *simple)
         {"only-of-type", {.kind = SIMPLE_ONLY, .of_type = true}},
         {"defined", {.kind = SIMPLE_ALWAYS}},
     };
-    static const char *const states[] = {
-        "hover",      "active",     "focus",        "focus-within", "focus-visible", "visited",
-        "target",     "enabled",    "disabled",     "checked",      "indeterminate", "default",
-        "valid",      "invalid",    "required",     "optional",     "playing",       "paused",
-        "fullscreen", "current",    "past",         "future",       "selection",     "before",
-        "after",      "first-line", "first-letter", "host",         "target-within", NULL};
     for (size_t i = 0; i < G_N_ELEMENTS(known); i++)
         if (strcmp(name, known[i].name) == 0) {
             *simple = known[i].simple;
@@ -237,7 +229,11 @@ static bool read_pseudo_class(const char *name, Simple *simple)
             return true;
         }
     simple->kind = SIMPLE_NEVER, simple->specificity = 0x100;
-    return g_strv_contains(states, name);
+    return fl_css_has_word(
+        "hover active focus focus-within focus-visible visited target enabled disabled checked "
+        "indeterminate default valid invalid required optional playing paused fullscreen current "
+        "past future selection before after first-line first-letter host target-within",
+        name);
 }
 
 /** Reads ":name" or ":name(…)" after its colon; "::name" is a pseudo-element, which SVG lacks. */
@@ -319,11 +315,9 @@ static char read_combinator(const char **s)
 static char *key_of(const Compound *compound)
 {
     const Simple *best = NULL;
-    for (guint i = 0; i < compound->simple->len; i++) {
-        const Simple *simple = &g_array_index(compound->simple, Simple, i);
+    FL_EACH (const Simple, simple, compound->simple)
         if (simple->kind <= SIMPLE_CLASS && (!best || simple->specificity > best->specificity))
             best = simple;
-    }
     const char *sigil = !best                        ? ""
                         : best->kind == SIMPLE_ID    ? "#"
                         : best->kind == SIMPLE_CLASS ? "."
@@ -442,15 +436,6 @@ static bool is_only(const Simple *simple, const xmlNode *node, FlSelectorWork *w
     return place_of(simple, node, work) == 1 && place_of(&last, node, work) == 1;
 }
 
-static bool has_word(const char *text, const char *word)
-{
-    const size_t n = strlen(word);
-    for (const char *at = text; n > 0 && (at = strstr(at, word)); at++)
-        if ((at == text || strchr(FL_CSS_SPACE, at[-1])) && (!at[n] || strchr(FL_CSS_SPACE, at[n])))
-            return true;
-    return false;
-}
-
 static bool matches_value(const Simple *simple, const char *text)
 {
     g_autofree char *folded = simple->ignore_case ? g_ascii_strdown(text, -1) : g_strdup(text);
@@ -461,7 +446,7 @@ static bool matches_value(const Simple *simple, const char *text)
     case '=':
         return strcmp(folded, wanted) == 0;
     case '~':
-        return !strpbrk(wanted, FL_CSS_SPACE) && has_word(folded, wanted);
+        return fl_css_has_word(folded, wanted);
     case '|':
         return g_str_has_prefix(folded, wanted) && (!folded[n] || folded[n] == '-');
     case '^':
@@ -496,7 +481,7 @@ static bool has_id(const xmlNode *node, const char *id)
 static bool has_class(const xmlNode *node, const char *class)
 {
     g_autoptr(xmlChar) own = fl_attribute(node, "class");
-    return own && has_word((const char *)own, class);
+    return own && fl_css_has_word((const char *)own, class);
 }
 
 static bool is_link(const xmlNode *node)

@@ -1,9 +1,7 @@
 #include "svg/css_shapes.h"
 
-#include "svg/geometry.h"
 #include "svg/normalise.h"
 #include "svg/path_data.h"
-#include "svg/pen.h"
 #include <math.h>
 #include <string.h>
 
@@ -56,7 +54,7 @@ static void add_cubic(Bounds *bounds, const FlCubic *cubic, const FlAffine *map)
     }
 }
 
-static FlOutlines *outlines_of(const xmlNode *node, const FlCssUnits *units)
+FlOutlines *fl_css_outlines(const xmlNode *node, const FlCssUnits *units)
 {
     return fl_outlines_of_shape(node, 96, (FlPageSize){units->width, units->height});
 }
@@ -86,7 +84,7 @@ static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *u
 {
     if (depth > MOST_DEPTH)
         return;
-    g_autoptr(FlOutlines) outlines = outlines_of(node, units);
+    g_autoptr(FlOutlines) outlines = fl_css_outlines(node, units);
     for (int i = 0; i < outlines->n_cubics; i++)
         add_cubic(bounds, &outlines->cubic[i], map);
     if (fl_is(node, "image") || fl_is(node, "foreignObject"))
@@ -140,31 +138,23 @@ static double walk_along(const FlOutlines *outlines, double target, FlPoint *pla
     return length;
 }
 
-double fl_css_outline_length(const xmlNode *node, const FlCssUnits *units)
+double fl_css_outline_length(const FlOutlines *outlines)
 {
-    g_autoptr(FlOutlines) outlines = outlines_of(node, units);
     FlPoint place;
     double direction;
     return walk_along(outlines, INFINITY, &place, &direction);
 }
 
-bool fl_css_place_on_path(const char *d, const char *distance, const FlCssUnits *units,
-                          FlPoint *place, double *direction)
+bool fl_css_place_on(const FlOutlines *outlines, const char *distance, const FlCssUnits *units,
+                     FlPoint *place, double *direction)
 {
-    g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
-    g_autoptr(GArray) cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic));
-    FlPen pen = {.subpath = subpath, .cubic = cubic};
     double along = 0;
-    if (fl_path_data_walk(d, fl_pen_step, &pen) || cubic->len == 0)
+    const double whole = walk_along(outlines, INFINITY, place, direction);
+    if (outlines->n_cubics == 0 || !fl_css_number(distance, units, whole, &along))
         return false;
-    const FlOutlines outlines = {.n_cubics = (int)cubic->len,
-                                 .cubic = &g_array_index(cubic, FlCubic, 0)};
-    const double whole = walk_along(&outlines, INFINITY, place, direction);
-    if (!fl_css_number(distance, units, whole, &along))
-        return false;
-    const bool closed = g_array_index(subpath, FlSubpath, 0).closed;
+    const bool closed = outlines->subpath[0].closed;
     along = closed && whole > 0 ? along - whole * floor(along / whole) : CLAMP(along, 0, whole);
-    walk_along(&outlines, along, place, direction);
+    walk_along(outlines, along, place, direction);
     return true;
 }
 
@@ -176,9 +166,8 @@ static void append_point(GString *d, const char *command, FlPoint p)
     g_string_append_printf(d, "%s%s %s", command, x, y);
 }
 
-char *fl_css_outline_text(const xmlNode *node, const FlCssUnits *units, const FlAffine *map)
+char *fl_css_outline_text(const FlOutlines *outlines, const FlAffine *map)
 {
-    g_autoptr(FlOutlines) outlines = outlines_of(node, units);
     GString *d = g_string_new(NULL);
     for (int s = 0; s < outlines->n_subpaths; s++) {
         const FlSubpath *sub = &outlines->subpath[s];
@@ -194,6 +183,16 @@ char *fl_css_outline_text(const xmlNode *node, const FlCssUnits *units, const Fl
     }
     return g_string_free(d, d->len == 0);
 }
+
+FlOutlines *fl_css_outlines_of_path(const char *d)
+{
+    FlPen pen = fl_pen_new();
+    const bool broken = fl_path_data_walk(d, fl_pen_step, &pen) != NULL;
+    g_autoptr(FlOutlines) outlines = fl_outlines_of_pen(&pen);
+    return broken ? NULL : g_steal_pointer(&outlines);
+}
+
+/* ---- shapes ---------------------------------------------------------------------------------- */
 
 bool fl_css_position(const char *text, const FlCssUnits *units, FlCssBox box, FlPoint *place)
 {
@@ -233,21 +232,9 @@ static bool read_radius(const char *text, const FlCssUnits *units, double whole,
     return true;
 }
 
-static char *ellipse_text(FlPoint c, double rx, double ry)
-{
-    g_autofree char *x = fl_css_number_text(rx), *y = fl_css_number_text(ry);
-    GString *d = g_string_new(NULL);
-    append_point(d, "M", (FlPoint){c.x + rx, c.y});
-    for (int k = 0; k < 2; k++) {
-        g_string_append_printf(d, "A%s %s 0 0 1 ", x, y);
-        append_point(d, "", (FlPoint){k ? c.x + rx : c.x - rx, c.y});
-    }
-    g_string_append_c(d, 'Z');
-    return g_string_free(d, FALSE);
-}
-
 /** circle() and ellipse(). */
-static char *round_shape(const char *arguments, bool circle, const FlCssUnits *units, FlCssBox box)
+static bool round_shape(const char *arguments, bool circle, const FlCssUnits *units, FlCssBox box,
+                        FlPen *pen)
 {
     g_auto(GStrv) word = fl_css_split(arguments, ' ');
     g_autofree char *place = NULL;
@@ -264,7 +251,7 @@ static char *round_shape(const char *arguments, bool circle, const FlCssUnits *u
     FlPoint c;
     double r[2];
     if (!fl_css_position(place ? place : "center", units, box, &c))
-        return NULL;
+        return false;
     const double left = c.x - box.x, right = box.x + box.width - c.x;
     const double top = c.y - box.y, bottom = box.y + box.height - c.y;
     if (circle) {
@@ -273,38 +260,26 @@ static char *round_shape(const char *arguments, bool circle, const FlCssUnits *u
         const double high = far ? MAX(top, bottom) : MIN(top, bottom);
         const double whole = hypot(box.width, box.height) / G_SQRT2;
         if (!read_radius(radius[0], units, whole, low, high, &r[0]))
-            return NULL;
-        return ellipse_text(c, r[0], r[0]);
-    }
-    if (!read_radius(radius[0], units, box.width, left, right, &r[0]) ||
-        !read_radius(radius[1], units, box.height, top, bottom, &r[1]))
-        return NULL;
-    return ellipse_text(c, r[0], r[1]);
+            return false;
+        r[1] = r[0];
+    } else if (!read_radius(radius[0], units, box.width, left, right, &r[0]) ||
+               !read_radius(radius[1], units, box.height, top, bottom, &r[1]))
+        return false;
+    fl_pen_ellipse(pen, c.x, c.y, r[0], r[1]);
+    return true;
 }
 
-/** A rectangle whose corners have radii across and down, clockwise from the top left. */
-static char *rounded_text(FlCssBox box, const double across[4], const double down[4])
+/** Radii that do not fit shrink alike [CSS Backgrounds 3 §4.5]. */
+static void fit_radii(FlCssBox box, double across[4], double down[4])
 {
-    static const int step[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}}; // along the side after it
-    GString *d = g_string_new(NULL);
-    double fit = 1; // radii that do not fit shrink alike [CSS Backgrounds 3 §4.5]
+    double fit = 1;
     for (int i = 0; i < 4; i++) {
         const double *r = i % 2 ? down : across;
         const double side = i % 2 ? box.height : box.width, sum = r[i] + r[(i + 1) % 4];
         fit = sum > side ? fmin(fit, side / sum) : fit;
     }
-    for (int i = 0; i < 4; i++) {
-        const FlPoint corner = {box.x + (i == 1 || i == 2 ? box.width : 0),
-                                box.y + (i > 1 ? box.height : 0)};
-        const double rx = across[i] * fit, ry = down[i] * fit;
-        const int *in = step[(i + 3) % 4], *out = step[i];
-        append_point(d, i ? "L" : "M", (FlPoint){corner.x - in[0] * rx, corner.y - in[1] * ry});
-        g_autofree char *a = fl_css_number_text(rx), *b = fl_css_number_text(ry);
-        g_string_append_printf(d, "A%s %s 0 0 1 ", a, b);
-        append_point(d, "", (FlPoint){corner.x + out[0] * rx, corner.y + out[1] * ry});
-    }
-    g_string_append_c(d, 'Z');
-    return g_string_free(d, FALSE);
+    for (int i = 0; i < 4; i++)
+        across[i] *= fit, down[i] *= fit;
 }
 
 /** Reads up to four values, of which those that are missing repeat others. */
@@ -339,8 +314,8 @@ static bool read_radii(const char *text, const FlCssUnits *units, FlCssBox box, 
 }
 
 /** inset(), rect() and xywh(). */
-static char *rect_shape(const char *name, const char *arguments, const FlCssUnits *units,
-                        FlCssBox box)
+static bool rect_shape(const char *name, const char *arguments, const FlCssUnits *units,
+                       FlCssBox box, FlPen *pen)
 {
     const char *round = strstr(arguments, "round");
     g_autofree char *sides =
@@ -352,13 +327,15 @@ static char *rect_shape(const char *name, const char *arguments, const FlCssUnit
     double v[4], across[4], down[4];
     if ((!inset && g_strv_length(part) != 4) || !read_four(part, units, whole, v) ||
         !read_radii(round ? round + 5 : "", units, box, across, down))
-        return NULL;
+        return false;
     FlCssBox at = {box.x + v[0], box.y + v[1], v[2], v[3]};
     if (!xywh)
         at = (FlCssBox){box.x + v[3], box.y + v[0], (inset ? w - v[1] : v[1]) - v[3],
                         (inset ? h - v[2] : v[2]) - v[0]};
     at.width = MAX(at.width, 0), at.height = MAX(at.height, 0);
-    return rounded_text(at, across, down);
+    fit_radii(at, across, down);
+    fl_pen_rect(pen, at.x, at.y, at.width, at.height, across, down);
+    return true;
 }
 
 static bool take_fill_rule(char **list, bool *evenodd)
@@ -367,55 +344,52 @@ static bool take_fill_rule(char **list, bool *evenodd)
     return *evenodd || (list[0] && strcmp(list[0], "nonzero") == 0);
 }
 
-static char *polygon_shape(const char *arguments, const FlCssUnits *units, FlCssBox box,
-                           bool *evenodd)
+static bool polygon_shape(const char *arguments, const FlCssUnits *units, FlCssBox box,
+                          bool *evenodd, FlPen *pen)
 {
     g_auto(GStrv) pair = fl_css_split(arguments, ',');
     const int first = take_fill_rule(pair, evenodd);
-    GString *d = g_string_new(NULL);
     for (int i = first; pair[i]; i++) {
         FlPoint p;
-        if (!fl_css_position(pair[i], units, box, &p)) {
-            g_string_free(d, TRUE);
-            return NULL;
-        }
-        append_point(d, i == first ? "M" : "L", p);
+        if (!fl_css_position(pair[i], units, box, &p))
+            return false;
+        (i == first ? fl_pen_move : fl_pen_line)(pen, p);
     }
-    g_string_append(d, d->len ? "Z" : "");
-    return g_string_free(d, d->len == 0);
+    fl_pen_close(pen);
+    return pair[first] != NULL;
 }
 
 /** path(), whose coordinates are relative to the box. */
-static char *path_shape(const char *arguments, FlCssBox box, bool *evenodd)
+static bool path_shape(const char *arguments, FlCssBox box, bool *evenodd, FlPen *pen)
 {
     g_auto(GStrv) part = fl_css_split(arguments, ',');
     const int first = take_fill_rule(part, evenodd);
     g_autofree char *d = part[first] ? fl_css_string_or_url(part[first]) : NULL;
-    if (!d || fl_path_data_error(d))
-        return NULL;
-    if (box.x == 0 && box.y == 0)
-        return g_steal_pointer(&d);
-    g_autoptr(xmlDoc) doc = xmlNewDoc((const xmlChar *)"1.0");
-    xmlNode *path = xmlNewDocNode(doc, NULL, (const xmlChar *)"path", NULL);
-    xmlDocSetRootElement(doc, path);
-    xmlSetNs(path, xmlNewNs(path, (const xmlChar *)FL_SVG_NAMESPACE, NULL));
-    fl_set_attribute(path, "d", d);
-    const FlAffine move = {1, 0, 0, 1, box.x, box.y};
-    const FlCssUnits units = {0};
-    return fl_css_outline_text(path, &units, &move);
+    const bool read = d && !fl_path_data_walk(d, fl_pen_step, pen);
+    for (guint i = 0; i < 4 * pen->cubic->len; i++) {
+        FlPoint *p = &g_array_index(pen->cubic, FlCubic, i / 4).p[i % 4];
+        p->x += box.x, p->y += box.y;
+    }
+    return read;
 }
 
-char *fl_css_basic_shape(const char *text, const FlCssUnits *units, FlCssBox box, bool *evenodd)
+FlOutlines *fl_css_basic_shape(const char *text, const FlCssUnits *units, FlCssBox box,
+                               bool *evenodd)
 {
     g_autofree char *name = NULL, *arguments = NULL;
     *evenodd = false;
     if (!fl_css_call(text, &name, &arguments))
         return NULL;
+    FlPen pen = fl_pen_new();
+    bool read = false;
     if (strcmp(name, "circle") == 0 || strcmp(name, "ellipse") == 0)
-        return round_shape(arguments, name[0] == 'c', units, box);
-    if (strcmp(name, "inset") == 0 || strcmp(name, "rect") == 0 || strcmp(name, "xywh") == 0)
-        return rect_shape(name, arguments, units, box);
-    if (strcmp(name, "polygon") == 0)
-        return polygon_shape(arguments, units, box, evenodd);
-    return strcmp(name, "path") == 0 ? path_shape(arguments, box, evenodd) : NULL;
+        read = round_shape(arguments, name[0] == 'c', units, box, &pen);
+    else if (strcmp(name, "inset") == 0 || strcmp(name, "rect") == 0 || strcmp(name, "xywh") == 0)
+        read = rect_shape(name, arguments, units, box, &pen);
+    else if (strcmp(name, "polygon") == 0)
+        read = polygon_shape(arguments, units, box, evenodd, &pen);
+    else if (strcmp(name, "path") == 0)
+        read = path_shape(arguments, box, evenodd, &pen);
+    g_autoptr(FlOutlines) outlines = fl_outlines_of_pen(&pen);
+    return read ? g_steal_pointer(&outlines) : NULL;
 }

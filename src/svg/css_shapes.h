@@ -2,7 +2,7 @@
 #ifndef FLUIDY_SVG_CSS_SHAPES_H
 #define FLUIDY_SVG_CSS_SHAPES_H
 
-#include "svg/document.h"
+#include "svg/geometry.h"
 #include "svg/transform.h"
 
 typedef struct FlCssBox {
@@ -17,21 +17,27 @@ typedef struct FlCssBox {
  */
 bool fl_css_fill_box(const xmlNode *node, const FlCssUnits *units, FlCssBox *box);
 
-/** The length of a shape's outline in user units; 0 without an outline. */
-double fl_css_outline_length(const xmlNode *node, const FlCssUnits *units);
+/** A shape's outline in its own coordinates; it has no cubics without an outline. */
+FlOutlines *fl_css_outlines(const xmlNode *node, const FlCssUnits *units);
 
-/** A place at a distance along path data, and the direction there in degrees; false: no path. */
-bool fl_css_place_on_path(const char *d, const char *distance, const FlCssUnits *units,
-                          FlPoint *place, double *direction);
+/** That of path data; NULL if these are broken. */
+FlOutlines *fl_css_outlines_of_path(const char *d);
 
-/** A shape's outline, mapped by `map`, as path data; NULL without an outline. To be freed. */
-char *fl_css_outline_text(const xmlNode *node, const FlCssUnits *units, const FlAffine *map);
+/** That of circle(), ellipse(), inset(), rect(), xywh(), polygon() or path() in a box [CSS Shapes
+ * 1]; NULL for other text. *evenodd: its fill rule. */
+FlOutlines *fl_css_basic_shape(const char *text, const FlCssUnits *units, FlCssBox box,
+                               bool *evenodd);
 
-/**
- * The path data of circle(), ellipse(), inset(), rect(), xywh(), polygon() or path() in a box [CSS
- * Shapes 1]; NULL for other text. *evenodd: its fill rule. To be freed.
+/** The length of outlines in user units. */
+double fl_css_outline_length(const FlOutlines *outlines);
+
+/** A place at a distance along outlines, and the direction there in degrees; false: there is none.
  */
-char *fl_css_basic_shape(const char *text, const FlCssUnits *units, FlCssBox box, bool *evenodd);
+bool fl_css_place_on(const FlOutlines *outlines, const char *distance, const FlCssUnits *units,
+                     FlPoint *place, double *direction);
+
+/** Outlines, mapped by `map`, as path data; NULL if there is none. To be freed. */
+char *fl_css_outline_text(const FlOutlines *outlines, const FlAffine *map);
 
 /**
  * A place in a box: "left top", "50% 10px", "center"; a third value, the depth, does not count.

@@ -280,8 +280,7 @@ static void read_keyframes(Reader *reader, const char *name, const char *block)
 static void read_property(Reader *reader, const char *name, const char *block)
 {
     g_autoptr(GArray) list = fl_css_declarations(block);
-    for (guint i = 0; i < list->len; i++) {
-        const FlCssDeclaration *d = &g_array_index(list, FlCssDeclaration, i);
+    FL_EACH (const FlCssDeclaration, d, list) {
         if (strcmp(d->name, "inherits") == 0 && strcmp(d->value, "false") == 0)
             g_hash_table_add(reader->sheet->own, (gpointer)g_intern_string(name));
         if (strcmp(d->name, "initial-value") == 0)
@@ -381,14 +380,6 @@ static void read_layer(Reader *reader, const char *prelude, const char *block, c
 static void read_at_rule(Reader *reader, const char *name, const char *prelude, const char *block,
                          const Place *place)
 {
-    static const char *const ignored[] = {"charset",
-                                          "page",
-                                          "view-transition",
-                                          "starting-style",
-                                          "font-feature-values",
-                                          "counter-style",
-                                          "position-try",
-                                          NULL};
     if (strcmp(name, "namespace") == 0) {
         if (strstr(prelude, FL_SVG_NAMESPACE)) // of others there are no shapes
             g_hash_table_add(reader->prefixes, g_strndup(prelude, fl_css_identifier(prelude)));
@@ -412,7 +403,9 @@ static void read_at_rule(Reader *reader, const char *name, const char *prelude, 
         read_property(reader, prelude, block);
     else if (strcmp(name, "font-face") == 0)
         warn(reader, "rule", "@font-face", "embeds a font; one of the system is drawn");
-    else if (!g_strv_contains(ignored, name)) {
+    else if (!fl_css_has_word("charset page view-transition starting-style font-feature-values "
+                              "counter-style position-try",
+                              name)) {
         g_autofree char *whole = g_strdup_printf("@%s %s", name, prelude);
         warn(reader, "rule", whole, "is not known and is left out");
     }
@@ -526,10 +519,8 @@ FlCssSheet *fl_css_sheet_take(xmlDoc *doc, const char *path, int number, FlCssPa
     take_instructions(&reader, doc, &place);
     take_elements(&reader, xmlDocGetRootElement(doc), &place);
     rank_layers(place.layer, 0);
-    for (guint i = 0; i < sheet->rules->len; i++) {
-        FlCssRule *rule = &g_array_index(sheet->rules, FlCssRule, i);
+    FL_EACH (FlCssRule, rule, sheet->rules)
         rule->layer = ((const Layer *)layers->pdata[rule->layer])->rank;
-    }
     return sheet;
 }
 

@@ -16,12 +16,10 @@ bool fl_is(const xmlNode *node, const char *name)
            node->ns && strcmp((const char *)node->ns->href, FL_SVG_NAMESPACE) == 0;
 }
 
-bool fl_is_one_of(const xmlNode *node, const char *const *names)
+bool fl_is_one_of(const xmlNode *node, const char *names)
 {
-    for (int i = 0; names[i]; i++)
-        if (fl_is(node, names[i]))
-            return true;
-    return false;
+    return fl_css_has_word(names, (const char *)node->name) &&
+           fl_is(node, (const char *)node->name);
 }
 
 xmlNode *fl_element_around(const xmlNode *node)
@@ -36,15 +34,12 @@ bool fl_is_root(const xmlNode *node)
 
 bool fl_is_container(const xmlNode *node)
 {
-    static const char *const containers[] = {"g", "svg", "a", NULL};
-    return fl_is_one_of(node, containers);
+    return fl_is_one_of(node, "g svg a");
 }
 
 bool fl_is_animation(const xmlNode *node)
 {
-    static const char *const animations[] = {
-        "animate", "animateTransform", "animateMotion", "animateColor", "set", NULL};
-    return fl_is_one_of(node, animations);
+    return fl_is_one_of(node, "animate animateTransform animateMotion animateColor set");
 }
 
 xmlChar *fl_attribute(const xmlNode *node, const char *name)
@@ -124,7 +119,7 @@ double fl_length_of(const xmlNode *node, const char *name, const FlCssUnits *uni
     return text && fl_css_number(text, units, whole, &value) ? value : 0;
 }
 
-xmlNode *fl_referred_by(const char *value, const char *const *kinds, GHashTable *ids)
+xmlNode *fl_referred_by(const char *value, const char *kinds, GHashTable *ids)
 {
     g_autofree char *reference = value ? fl_css_string_or_url(value) : NULL;
     xmlNode *found =

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_SVG_DOCUMENT_H
 #define FLUIDY_SVG_DOCUMENT_H
 
+#include "base/each.h"
 #include "base/warnings.h"
 #include "svg/css_value.h"
 #include <fluidy/error.h>
@@ -41,8 +42,8 @@ GHashTable *fl_document_ids(xmlDoc *doc);
 /** Returns: true if node is an SVG element of that name. */
 bool fl_is(const xmlNode *node, const char *name);
 
-/** Returns: true if node is an SVG element whose name is in a NULL-terminated list. */
-bool fl_is_one_of(const xmlNode *node, const char *const *names);
+/** Returns: true if node is an SVG element whose name is one of the words. */
+bool fl_is_one_of(const xmlNode *node, const char *names);
 
 /** Returns: true if an element is in no other one. */
 bool fl_is_root(const xmlNode *node);
@@ -93,8 +94,8 @@ char *fl_inherited_property(const xmlNode *node, const char *name);
 /** A property or attribute that is a length, of which `whole` is 100 %; 0 if it is none. */
 double fl_length_of(const xmlNode *node, const char *name, const FlCssUnits *units, double whole);
 
-/** The element of one of those kinds that a value, url(#id), refers to; NULL without one. */
-xmlNode *fl_referred_by(const char *value, const char *const *kinds, GHashTable *ids);
+/** The element, of one of the words, that a value, url(#id), refers to; NULL without one. */
+xmlNode *fl_referred_by(const char *value, const char *kinds, GHashTable *ids);
 
 /**
  * Adds declarations, such as "fill:none !important", to those of `style=""`. Returns: false if

@@ -1,23 +1,18 @@
 #include "svg/geometry.h"
 
+#include "base/reader.h"
 #include "svg/path_data.h"
 #include <math.h>
 #include <string.h>
 
-typedef struct Reader {
-    FlInheritance *inheritance;
-    GArray *subpath, *cubic; // FlSubpath, FlCubic
-} Reader;
-
 /* ---- leaves ---- */
 
 /** Draws a basic shape. Returns: what it is. */
-static FlOutlineKind draw_shape(const Reader *reader, const xmlNode *node, const FlInherited *s,
-                                FlPen *pen, bool *broken)
+static FlOutlineKind draw_shape(const FlInheritance *inheritance, const xmlNode *node,
+                                const FlInherited *s, FlPen *pen, bool *broken)
 {
     const double w = s->width, h = s->height, mean = sqrt((w * w + h * h) / 2);
-#define LENGTH(name, whole, initial)                                                               \
-    fl_length_in(reader->inheritance, node, name, whole, initial, broken)
+#define LENGTH(name, whole, initial) fl_length_in(inheritance, node, name, whole, initial, broken)
     if (fl_is(node, "circle")) {
         const double r = LENGTH("r", mean, 0);
         fl_pen_ellipse(pen, LENGTH("cx", w, 0), LENGTH("cy", h, 0), r, r);
@@ -33,8 +28,9 @@ static FlOutlineKind draw_shape(const Reader *reader, const xmlNode *node, const
         const double width = LENGTH("width", w, 0), height = LENGTH("height", h, 0);
         double rx = LENGTH("rx", w, -1), ry = LENGTH("ry", h, -1);
         rx = rx < 0 ? MAX(ry, 0) : rx, ry = ry < 0 ? rx : ry;
+        rx = CLAMP(rx, 0, width / 2), ry = CLAMP(ry, 0, height / 2);
         fl_pen_rect(pen, LENGTH("x", w, 0), LENGTH("y", h, 0), width, height,
-                    CLAMP(rx, 0, width / 2), CLAMP(ry, 0, height / 2));
+                    (double[]){rx, rx, rx, rx}, (double[]){ry, ry, ry, ry});
         return FL_OUTLINE_RECT;
     }
     if (fl_is(node, "line")) {
@@ -52,11 +48,12 @@ static FlOutlineKind draw_shape(const Reader *reader, const xmlNode *node, const
     return FL_OUTLINE_NONE;
 }
 
-static FlOutlineKind draw_leaf(const Reader *reader, const xmlNode *node, const FlInherited *s,
-                               FlPen *pen, bool *broken)
+static FlOutlineKind draw_leaf(const FlInheritance *inheritance, const xmlNode *node,
+                               const FlInherited *s, FlPen *pen, bool *broken)
 {
+    *pen = (FlPen){.subpath = pen->subpath, .cubic = pen->cubic};
     if (!fl_is(node, "path"))
-        return draw_shape(reader, node, s, pen, broken);
+        return draw_shape(inheritance, node, s, pen, broken);
     g_autoptr(xmlChar) d = fl_attribute(node, "d");
     if (d)
         fl_path_data_walk((const char *)d, fl_pen_step, pen);
@@ -94,82 +91,63 @@ static bool is_finite(const FlGeometry *g, const FlCubic *cubic, size_t n)
     return finite;
 }
 
-static FlGeometry read_leaf(Reader *reader, const FlLeaf *leaf, const xmlNode *node)
+static FlGeometry read_leaf(FlInheritance *inheritance, const FlLeaf *leaf, const xmlNode *node,
+                            FlPen *pen)
 {
     FlGeometry g;
     memset(&g, 0, sizeof g); // clears the padding, since the struct is stored as bytes
-    FlPen pen = {.subpath = reader->subpath, .cubic = reader->cubic};
-    const FlInherited s = fl_inherited_by(reader->inheritance, node);
+    const FlInherited s = fl_inherited_by(inheritance, node);
     bool broken = s.broken;
-    const guint first = reader->cubic->len;
-    g.first_subpath = (int32_t)reader->subpath->len;
+    const guint first = pen->cubic->len;
+    g.first_subpath = (int32_t)pen->subpath->len;
     g.ctm = s.ctm;
-    g.kind = (uint8_t)draw_leaf(reader, node, &s, &pen, &broken);
-    g.n_subpaths = (int32_t)reader->subpath->len - g.first_subpath;
+    g.kind = (uint8_t)draw_leaf(inheritance, node, &s, pen, &broken);
+    g.n_subpaths = (int32_t)pen->subpath->len - g.first_subpath;
     g.clipped = s.clipped, g.evenodd = s.evenodd;
     g.filled = strcmp(s.fill, "none") != 0;
     g.stroke = strcmp(s.stroke, "none") != 0 ? s.stroke_width : 0;
-    g.usable =
-        !broken && g.kind != FL_OUTLINE_NONE && g.n_subpaths > 0 &&
-        is_finite(&g, &g_array_index(reader->cubic, FlCubic, first), reader->cubic->len - first);
+    g.usable = !broken && g.kind != FL_OUTLINE_NONE && g.n_subpaths > 0 &&
+               is_finite(&g, &g_array_index(pen->cubic, FlCubic, first), pen->cubic->len - first);
     g.unit = leaf->unit;
     name_outline(&g, leaf);
     return g;
 }
 
-static FlOutlines *outlines_of(int n_leaves, int n_subpaths, int n_cubics)
+FlOutlines *fl_outlines_of_pen(FlPen *pen)
 {
-    FlOutlines *outlines = g_new0(FlOutlines, 1);
-    *outlines = (FlOutlines){n_leaves,
-                             n_subpaths,
-                             n_cubics,
-                             g_new0(FlGeometry, n_leaves + 1),
-                             g_new0(FlSubpath, n_subpaths + 1),
-                             g_new0(FlCubic, n_cubics + 1)};
+    FlOutlines *outlines = g_new(FlOutlines, 1);
+    *outlines =
+        (FlOutlines){.n_subpaths = (int)pen->subpath->len, .n_cubics = (int)pen->cubic->len};
+    outlines->subpath = (FlSubpath *)(void *)g_array_free(pen->subpath, FALSE);
+    outlines->cubic = (FlCubic *)(void *)g_array_free(pen->cubic, FALSE);
     return outlines;
-}
-
-static void take_curves(FlOutlines *outlines, const GArray *subpath, const GArray *cubic)
-{
-    if (subpath->len > 0)
-        memcpy(outlines->subpath, subpath->data, subpath->len * sizeof(FlSubpath));
-    if (cubic->len > 0)
-        memcpy(outlines->cubic, cubic->data, cubic->len * sizeof(FlCubic));
 }
 
 FlOutlines *fl_outlines_of_shape(const xmlNode *node, double dpi, FlPageSize viewport)
 {
-    g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
-    g_autoptr(GArray) cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic));
-    FlInheritance inheritance = {.dpi = dpi};
-    const Reader reader = {.inheritance = &inheritance};
+    const FlInheritance inheritance = {.dpi = dpi};
     const FlInherited inherited = {.width = viewport.width, .height = viewport.height};
-    FlPen pen = {.subpath = subpath, .cubic = cubic};
+    FlPen pen = fl_pen_new();
     bool broken = false;
-    draw_leaf(&reader, node, &inherited, &pen, &broken);
-    FlOutlines *outlines =
-        outlines_of(0, broken ? 0 : (int)subpath->len, broken ? 0 : (int)cubic->len);
-    if (!broken)
-        take_curves(outlines, subpath, cubic);
-    return outlines;
+    draw_leaf(&inheritance, node, &inherited, &pen, &broken);
+    if (broken)
+        g_array_set_size(pen.subpath, 0), g_array_set_size(pen.cubic, 0);
+    return fl_outlines_of_pen(&pen);
 }
 
 FlOutlines *fl_outlines_new(FlInheritance *inheritance, const FlLeaves *list)
 {
-    const GArray *leaves = list->leaf;
-    g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
-    g_autoptr(GArray) cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic));
-    Reader reader = {inheritance, subpath, cubic};
-    g_autofree FlGeometry *read = g_new0(FlGeometry, leaves->len + 1);
-    for (guint i = 0; i < leaves->len; i++) {
-        const FlLeaf *leaf = &g_array_index(leaves, FlLeaf, i);
+    FlPen pen = fl_pen_new();
+    FlGeometry *read = g_new0(FlGeometry, list->leaf->len + 1);
+    for (guint i = 0; i < list->leaf->len; i++) {
+        const FlLeaf *leaf = &g_array_index(list->leaf, FlLeaf, i);
         const xmlNode *node = g_hash_table_lookup(list->ids, leaf->id);
         if (node)
-            read[i] = read_leaf(&reader, leaf, node);
+            read[i] = read_leaf(inheritance, leaf, node, &pen);
     }
-    FlOutlines *outlines = outlines_of((int)leaves->len, (int)subpath->len, (int)cubic->len);
-    memcpy(outlines->leaf, read, leaves->len * sizeof *read);
-    take_curves(outlines, subpath, cubic);
+    FlOutlines *outlines = fl_outlines_of_pen(&pen);
+    outlines->n_leaves = (int)list->leaf->len;
+    outlines->leaf = read;
     return outlines;
 }
 
@@ -192,16 +170,12 @@ void fl_outlines_free(FlOutlines *outlines)
 
 uint8_t *fl_outlines_pack(const FlOutlines *o, size_t *bytes)
 {
-    const int32_t n[4] = {o->n_leaves, o->n_subpaths, o->n_cubics, 0};
-    const size_t leaves = n[0] * sizeof *o->leaf, subpaths = n[1] * sizeof *o->subpath;
-    const size_t cubics = n[2] * sizeof *o->cubic;
-    *bytes = sizeof n + leaves + subpaths + cubics;
-    uint8_t *data = g_malloc(*bytes), *to = data;
-    memcpy(to, n, sizeof n);
-    memcpy(to += sizeof n, o->leaf, leaves);
-    memcpy(to += leaves, o->subpath, subpaths);
-    memcpy(to + subpaths, o->cubic, cubics);
-    return data;
+    GByteArray *out = g_byte_array_new();
+    fl_put_items(out, o->leaf, o->n_leaves, sizeof *o->leaf);
+    fl_put_items(out, o->subpath, o->n_subpaths, sizeof *o->subpath);
+    fl_put_items(out, o->cubic, o->n_cubics, sizeof *o->cubic);
+    *bytes = out->len;
+    return g_byte_array_free(out, FALSE);
 }
 
 /** Returns: true if the n items from the first on lie within `all` items. */
@@ -225,25 +199,15 @@ static bool is_sound(const FlOutlines *o, const FlGeometry *g)
 
 FlOutlines *fl_outlines_unpack(const uint8_t *data, size_t bytes)
 {
-    int32_t n[4];
-    if (bytes < sizeof n)
-        return NULL;
-    memcpy(n, data, sizeof n);
-    if (n[0] < 0 || n[1] < 0 || n[2] < 0)
-        return NULL;
-    const size_t leaves = (size_t)n[0] * sizeof(FlGeometry);
-    const size_t subpaths = (size_t)n[1] * sizeof(FlSubpath);
-    const size_t cubics = (size_t)n[2] * sizeof(FlCubic);
-    if (bytes != sizeof n + leaves + subpaths + cubics)
-        return NULL;
-    g_autoptr(FlOutlines) o = outlines_of(n[0], n[1], n[2]);
-    memcpy(o->leaf, data += sizeof n, leaves);
-    memcpy(o->subpath, data += leaves, subpaths);
-    memcpy(o->cubic, data + subpaths, cubics);
-    for (int i = 0; i < o->n_leaves; i++)
-        if (!is_sound(o, &o->leaf[i]))
-            return NULL;
-    return g_steal_pointer(&o);
+    FlReader reader = fl_reader_over(data, bytes);
+    g_autoptr(FlOutlines) o = g_new0(FlOutlines, 1);
+    o->leaf = fl_take_items(&reader, sizeof *o->leaf, &o->n_leaves);
+    o->subpath = fl_take_items(&reader, sizeof *o->subpath, &o->n_subpaths);
+    o->cubic = fl_take_items(&reader, sizeof *o->cubic, &o->n_cubics);
+    bool sound = fl_reader_ends(&reader);
+    for (int i = 0; i < o->n_leaves && sound; i++)
+        sound = is_sound(o, &o->leaf[i]);
+    return sound ? g_steal_pointer(&o) : NULL;
 }
 
 FlPoint fl_cubic_at(const FlCubic *cubic, const FlAffine *ctm, double t)

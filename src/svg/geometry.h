@@ -55,6 +55,9 @@ FlOutlines *fl_outlines_new(FlInheritance *inheritance, const FlLeaves *list);
  */
 FlOutlines *fl_outlines_of_shape(const xmlNode *node, double dpi, FlPageSize viewport);
 
+/** What a pen has drawn, without leaves; takes its arrays over. */
+FlOutlines *fl_outlines_of_pen(FlPen *pen);
+
 /** Makes the picture that they are in `factor` times as large. */
 void fl_outlines_scale(FlOutlines *outlines, double factor);
 

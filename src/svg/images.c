@@ -221,7 +221,6 @@ static bool check_file(const Check *check, xmlNode *node, xmlAttr *a, const char
 static bool check_reference(const Check *check, xmlNode *node, xmlAttr *a, const char *href,
                             GError **error)
 {
-    static const char *const images[] = {"image", "feImage", NULL};
     bool is_there = false;
     g_autofree char *file = fl_reference_file(check->path, href, &is_there);
     if (file)
@@ -229,7 +228,7 @@ static bool check_reference(const Check *check, xmlNode *node, xmlAttr *a, const
     if (is_there && !fl_file_check(file, FL_ERROR_INPUT, NULL)) {
         warn(check, node, href, "is a pipe or a device and is left out");
         xmlRemoveProp(a);
-    } else if (!fl_is_one_of(node, images))
+    } else if (!fl_is_one_of(node, "image feImage"))
         return true;
     else if (!file)
         warn(check, node, href, "is not in a file and is left out: nothing is fetched");

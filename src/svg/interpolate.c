@@ -278,15 +278,16 @@ double fl_value_distance(const char *a, const char *b)
  * missing, a word that changes nothing in place of the other one. */
 static char *word_at(const char *kind, char **own, guint n, char **others, guint i)
 {
-    static const char *const whole[] = {"brightness", "contrast", "opacity",
-                                        "saturate",   "scale",    NULL};
     const char *other = n <= i ? others[i] : NULL;
     double number;
     if (n > i || (n == 1 && strcmp(kind, "scale") == 0)) // scale(x) is scale(x, x)
         return g_strdup(own[MIN(i, n - 1)]);
     if (strcmp(kind, "drop-shadow") == 0 && !fl_number_read(&other, &number))
         return g_strdup("transparent");
-    return g_strdup(g_strv_contains(whole, kind) || g_str_has_prefix(kind, "scale") ? "1" : "0");
+    return g_strdup(fl_css_has_word("brightness contrast opacity saturate scale", kind) ||
+                            g_str_has_prefix(kind, "scale")
+                        ? "1"
+                        : "0");
 }
 
 /** Appends the words between two lists. Returns: false if any have no value between them. */

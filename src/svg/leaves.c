@@ -63,20 +63,27 @@ static void enter(Walk *w, const xmlNode *node, int index)
     g_string_append_printf(w->list[TREE], w->list[TREE]->len ? "/%d" : "%d", index);
 }
 
+/** A copy of a text, which belongs to the leaves. */
+static char *keep(const Walk *w, const char *text)
+{
+    return g_string_chunk_insert_const(w->leaves->text, text);
+}
+
 /** The node's id if it is the first of that id, else a new one, which goes into the document. */
 static char *give_id(Walk *w, xmlNode *node)
 {
     g_autoptr(xmlChar) id = fl_attribute(node, "id");
     if (id && id[0] && g_hash_table_lookup(w->by_id, id) == node)
-        return g_strdup((const char *)id);
-    char *made = NULL;
+        return keep(w, (const char *)id);
+    g_autofree char *made = NULL;
     do {
         g_free(made);
         made = g_strdup_printf("fl-leaf-%d", w->n_made++);
     } while (g_hash_table_contains(w->by_id, made));
-    g_hash_table_insert(w->by_id, g_strdup(made), node);
     fl_set_attribute(node, "id", made);
-    return made;
+    char *kept = keep(w, made);
+    g_hash_table_insert(w->by_id, g_steal_pointer(&made), node);
+    return kept;
 }
 
 static bool has_text(const xmlNode *node)
@@ -111,10 +118,9 @@ static const char *outermost_mask(const Walk *w)
 static FlLeaf make_leaf(Walk *w, xmlNode *node)
 {
     g_autoptr(xmlChar) name = authored_id(node);
-    static const char *const unsplit[] = {"text", "image", "use", "g", "svg", "a", NULL};
     static const char *const markers[] = {"marker", "marker-start", "marker-mid", "marker-end",
                                           NULL};
-    bool whole = fl_is_one_of(node, unsplit);
+    bool whole = fl_is_one_of(node, "text image use g svg a");
     for (int i = 0; markers[i] && !whole; i++) {
         g_autofree char *marker = fl_property(node, markers[i]);
         whole = marker && strcmp(marker, "none") != 0;
@@ -123,15 +129,15 @@ static FlLeaf make_leaf(Walk *w, xmlNode *node)
     const char *masked = outermost_mask(w);
     FlLeaf leaf = {
         .id = id,
-        .layer = g_strdup(masked ? masked : id),
+        .layer = keep(w, masked ? masked : id),
         .mask = w->mask,
-        .name = g_strdup(name ? (const char *)name : ""),
-        .labels = g_strdup(w->list[LABELS]->str),
-        .layers = g_strdup(w->list[LAYERS]->str),
-        .ids = g_strdup(w->list[IDS]->str),
-        .groups = g_strdup(w->list[GROUPS]->str),
-        .classes = g_strdup(w->list[CLASSES]->str),
-        .tree = g_strdup(w->list[TREE]->str),
+        .name = keep(w, name ? (const char *)name : ""),
+        .labels = keep(w, w->list[LABELS]->str),
+        .layers = keep(w, w->list[LAYERS]->str),
+        .ids = keep(w, w->list[IDS]->str),
+        .groups = keep(w, w->list[GROUPS]->str),
+        .classes = keep(w, w->list[CLASSES]->str),
+        .tree = keep(w, w->list[TREE]->str),
         .unit = w->unit,
         .text = has_text(node),
     };
@@ -148,9 +154,7 @@ static bool is_hidden(const xmlNode *node)
 
 static bool is_drawn(const xmlNode *node)
 {
-    static const char *const drawn[] = {"path",    "rect", "circle", "ellipse", "line", "polyline",
-                                        "polygon", "text", "image",  "use",     NULL};
-    return fl_is_one_of(node, drawn);
+    return fl_is_one_of(node, "path rect circle ellipse line polyline polygon text image use");
 }
 
 /** Returns: true if a group is drawn as one even where its shapes do not overlap. */
@@ -254,39 +258,13 @@ static void add_all(Walk *w, xmlNode *root)
     g_array_append_val(w->leaves->leaf, leaf);
 }
 
-static void leaf_clear(void *data)
-{
-    FlLeaf *leaf = data;
-    g_free(leaf->id);
-    g_free(leaf->layer);
-    g_free(leaf->name);
-    g_free(leaf->labels);
-    g_free(leaf->layers);
-    g_free(leaf->ids);
-    g_free(leaf->groups);
-    g_free(leaf->classes);
-    g_free(leaf->tree);
-}
-
-static void unit_clear(void *data)
-{
-    leaf_clear(&((FlGroupUnit *)data)->leaf);
-}
-
-static void mask_clear(void *data)
-{
-    g_free(((FlGroupMask *)data)->group);
-}
-
 FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole, GHashTable *ids)
 {
     FlLeaves *leaves = g_new0(FlLeaves, 1);
     leaves->leaf = g_array_new(FALSE, FALSE, sizeof(FlLeaf));
     leaves->unit = g_array_new(FALSE, FALSE, sizeof(FlGroupUnit));
     leaves->mask = g_array_new(FALSE, FALSE, sizeof(FlGroupMask));
-    g_array_set_clear_func(leaves->leaf, leaf_clear);
-    g_array_set_clear_func(leaves->unit, unit_clear);
-    g_array_set_clear_func(leaves->mask, mask_clear);
+    leaves->text = g_string_chunk_new(4096);
     Walk w = {.whole = whole, .leaves = leaves, .unit = -1, .mask = -1};
     for (int k = 0; k < N_LISTS; k++)
         w.list[k] = g_string_new(NULL);
@@ -307,6 +285,7 @@ void fl_leaves_free(FlLeaves *leaves)
     g_array_unref(leaves->leaf);
     g_array_unref(leaves->unit);
     g_array_unref(leaves->mask);
+    g_string_chunk_free(leaves->text);
     g_hash_table_unref(leaves->ids);
     g_free(leaves);
 }

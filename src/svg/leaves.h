@@ -7,7 +7,8 @@
 /**
  * One thing to draw: a shape, a text, an image; or a group that is drawn as one.
  *
- * Lists are joined with '\n', outermost first, and "" if empty. All strings are set.
+ * Lists are joined with '\n', outermost first, and "" if empty. All strings are set; they belong to
+ * FlLeaves.text.
  */
 typedef struct FlLeaf {
     char *id;      // in the normalised document, unique
@@ -47,10 +48,11 @@ typedef struct FlGroupMask {
 } FlGroupMask;
 
 typedef struct FlLeaves {
-    GArray *leaf;    // FlLeaf
-    GArray *unit;    // FlGroupUnit
-    GArray *mask;    // FlGroupMask
-    GHashTable *ids; // of the document: id -> xmlNode, the first of that id
+    GArray *leaf;       // FlLeaf
+    GArray *unit;       // FlGroupUnit
+    GArray *mask;       // FlGroupMask
+    GStringChunk *text; // of all these
+    GHashTable *ids;    // of the document: id -> xmlNode, the first of that id
 } FlLeaves;
 
 /** The name of a leaf in a list of what is drawn as one, see fl_leaves_new(); to be freed. */

@@ -116,11 +116,10 @@ static xmlChar *blend_mode(const xmlNode *filter)
  */
 static void mend_inputs(xmlNode *filter)
 {
-    static const char *const colouring[] = {"feColorMatrix", "feComponentTransfer", NULL};
     g_autoptr(xmlChar) mode = blend_mode(filter);
     bool colours = false;
     FL_EACH_ELEMENT (step, filter)
-        colours |= fl_is_one_of(step, colouring);
+        colours |= fl_is_one_of(step, "feColorMatrix feComponentTransfer");
     if (colours && redirect(filter, "SourceAlpha", "fl-alpha"))
         fl_set_attribute(add_input(filter, "feColorMatrix", "fl-alpha"), "values",
                          "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 1 0");
@@ -132,9 +131,8 @@ static void mend_inputs(xmlNode *filter)
 /** Makes a filter that only blends with the background the blend mode of its element. */
 static void mend_blend(const Mend *m, xmlNode *node)
 {
-    static const char *const filters[] = {"filter", NULL};
     g_autofree char *value = fl_property(node, "filter");
-    const xmlNode *filter = fl_referred_by(value, filters, m->ids);
+    const xmlNode *filter = fl_referred_by(value, "filter", m->ids);
     g_autoptr(xmlChar) mode = filter ? blend_mode(filter) : NULL;
     g_autofree char *style = mode ? g_strdup_printf("filter:none;mix-blend-mode:%s", mode) : NULL;
     if (style)
@@ -235,12 +233,11 @@ static xmlNode *wrap(xmlNode *node, const xmlNode *clip)
 /** librsvg leaves the clip of a clip path out: a group around what is clipped has it instead. */
 static void mend_clip(xmlNode *node, GHashTable *ids)
 {
-    static const char *const clips[] = {"clipPath", NULL};
     for (int depth = 0; depth < MOST_CLIPS; depth++) {
         g_autofree char *value = fl_property(node, "clip-path");
-        const xmlNode *clip = fl_referred_by(value, clips, ids);
+        const xmlNode *clip = fl_referred_by(value, "clipPath", ids);
         g_autofree char *outer = clip ? fl_property(clip, "clip-path") : NULL;
-        if (!fl_referred_by(outer, clips, ids))
+        if (!fl_referred_by(outer, "clipPath", ids))
             return;
         node = wrap(node, clip);
     }
@@ -352,17 +349,15 @@ static void mend_words(xmlNode *node)
 
 static void mend(Mend *m, xmlNode *node)
 {
-    static const char *const gradients[] = {"linearGradient", "radialGradient", NULL};
-    static const char *const with_points[] = {"polygon", "polyline", NULL};
     if (node->ns && g_str_has_prefix((const char *)node->name, "fe"))
         mend_numbers(node);
     if (fl_is(node, "feDropShadow"))
         mend_shadow(node, m->n_made++);
     else if (fl_is(node, "filter"))
         mend_inputs(node);
-    else if (fl_is_one_of(node, gradients))
+    else if (fl_is_one_of(node, "linearGradient radialGradient"))
         mend_gradient(node);
-    else if (fl_is_one_of(node, with_points))
+    else if (fl_is_one_of(node, "polygon polyline"))
         mend_points(node);
     else if (fl_is(node, "text") || fl_is(node, "tspan"))
         mend_baseline(node);

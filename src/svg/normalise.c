@@ -5,7 +5,6 @@
 #include <string.h>
 
 typedef struct Work {
-    const char *const *whole;
     const char *path;
     int number;
     FlWarnings *warnings;
@@ -14,11 +13,8 @@ typedef struct Work {
 
 bool fl_is_undrawn(const xmlNode *node)
 {
-    static const char *const undrawn[] = {
-        "defs",   "symbol",         "clipPath",       "mask",     "pattern",
-        "marker", "linearGradient", "radialGradient", "filter",   "style",
-        "script", "title",          "desc",           "metadata", NULL};
-    return fl_is_one_of(node, undrawn);
+    return fl_is_one_of(node, "defs symbol clipPath mask pattern marker linearGradient "
+                              "radialGradient filter style script title desc metadata");
 }
 
 static void name_groups(xmlNode *node, GHashTable *ids, int *n_made)
@@ -144,8 +140,7 @@ static bool normalise(const Work *work, xmlNode *node, GError **error)
         return false;
     for (xmlNode *child = node->children, *next; child; child = next) {
         next = child->next;
-        if (child->type != XML_ELEMENT_NODE || fl_is_undrawn(child) ||
-            fl_is_whole(child, work->whole))
+        if (child->type != XML_ELEMENT_NODE || fl_is_undrawn(child))
             continue;
         if (fl_is(child, "switch"))
             resolve_switch(child);
@@ -157,9 +152,9 @@ static bool normalise(const Work *work, xmlNode *node, GError **error)
     return true;
 }
 
-bool fl_document_normalise(xmlDoc *doc, const char *const *whole, GHashTable *ids, const char *path,
-                           int number, FlWarnings *warnings, GError **error)
+bool fl_document_normalise(xmlDoc *doc, GHashTable *ids, const char *path, int number,
+                           FlWarnings *warnings, GError **error)
 {
-    const Work work = {whole, path, number, warnings, ids};
+    const Work work = {path, number, warnings, ids};
     return normalise(&work, xmlDocGetRootElement(doc), error);
 }

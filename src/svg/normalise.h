@@ -19,12 +19,12 @@ bool fl_is_whole(const xmlNode *node, const char *const *whole);
 
 /**
  * Makes each <switch> a <g> with its first eligible child, and hides each <use> that shows nothing;
- * one that shows itself causes a warning. Elements of `whole`, see fl_is_whole(), stay unchanged.
+ * one that shows itself causes a warning.
  *
  * Returns: false with FL_ERROR_LIMIT if elements lie too deep.
  */
-bool fl_document_normalise(xmlDoc *doc, const char *const *whole, GHashTable *ids, const char *path,
-                           int number, FlWarnings *warnings, GError **error);
+bool fl_document_normalise(xmlDoc *doc, GHashTable *ids, const char *path, int number,
+                           FlWarnings *warnings, GError **error);
 
 /** Returns: true if a <switch> may show this child. */
 bool fl_is_eligible(const xmlNode *node);

@@ -9,6 +9,12 @@ static FlPoint between(FlPoint a, FlPoint b, double t)
     return (FlPoint){a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t};
 }
 
+FlPen fl_pen_new(void)
+{
+    return (FlPen){.subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath)),
+                   .cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic))};
+}
+
 void fl_pen_move(FlPen *pen, FlPoint p)
 {
     pen->at = pen->start = p;
@@ -50,8 +56,7 @@ static bool is_back(const FlPen *pen)
     return fabs(pen->at.x - pen->start.x) + fabs(pen->at.y - pen->start.y) <= 1e-3 * reach;
 }
 
-/** Ends a subpath; a closing line of no length is no segment. */
-static void close_subpath(FlPen *pen)
+void fl_pen_close(FlPen *pen)
 {
     if (pen->open) {
         if (!is_back(pen))
@@ -186,7 +191,7 @@ void fl_pen_step(void *data, char command, const double *v)
         fl_pen_line(pen, (FlPoint){pen->at.x, o.y + v[0]});
         break;
     case 'Z':
-        close_subpath(pen);
+        fl_pen_close(pen);
         break;
     default:
         curve_step(pen, upper, v, o, a, b);
@@ -203,22 +208,27 @@ void fl_pen_ellipse(FlPen *pen, double cx, double cy, double rx, double ry)
     for (int k = 0; k < 4; k++)
         quarter_to(pen, &m, corner[k], corner[(k + 1) % 4]);
     pen->at = pen->start;
-    close_subpath(pen);
+    fl_pen_close(pen);
 }
 
-void fl_pen_rect(FlPen *pen, double x, double y, double w, double h, double rx, double ry)
+void fl_pen_rect(FlPen *pen, double x, double y, double w, double h, const double rx[4],
+                 const double ry[4])
 {
     static const FlPoint corner[4] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
-    const FlPoint centre[4] = {
-        {x + w - rx, y + ry}, {x + w - rx, y + h - ry}, {x + rx, y + h - ry}, {x + rx, y + ry}};
-    fl_pen_move(pen, (FlPoint){x + rx, y});
+    fl_pen_move(pen, (FlPoint){x + rx[0], y});
     for (int k = 0; k < 4; k++) {
-        const FlAffine m = {rx, 0, 0, ry, centre[k].x, centre[k].y};
+        const int i = (k + 1) % 4; // from the top right on
+        const FlAffine m = {rx[i],
+                            0,
+                            0,
+                            ry[i],
+                            k < 2 ? x + w - rx[i] : x + rx[i],
+                            k % 3 ? y + h - ry[i] : y + ry[i]};
         fl_pen_line(pen, fl_affine_apply(&m, corner[k]));
-        quarter_to(pen, &m, corner[k], corner[(k + 1) % 4]);
+        quarter_to(pen, &m, corner[k], corner[i]);
     }
     pen->at = pen->start;
-    close_subpath(pen);
+    fl_pen_close(pen);
 }
 
 bool fl_pen_points(FlPen *pen, const char *points, bool closed)
@@ -236,6 +246,6 @@ bool fl_pen_points(FlPen *pen, const char *points, bool closed)
             fl_pen_line(pen, (FlPoint){v[0], v[1]});
     }
     if (closed)
-        close_subpath(pen);
+        fl_pen_close(pen);
     return !*s;
 }

@@ -28,13 +28,19 @@ typedef struct FlPen {
 /** An FlPathStep: adds one step of path data. */
 void fl_pen_step(void *pen, char command, const double *v);
 
+FlPen fl_pen_new(void);
+
 void fl_pen_move(FlPen *pen, FlPoint p);
 void fl_pen_line(FlPen *pen, FlPoint end);
 
+/** Ends a subpath; a closing line of no length is no segment. */
+void fl_pen_close(FlPen *pen);
+
 void fl_pen_ellipse(FlPen *pen, double cx, double cy, double rx, double ry);
 
-/** Eight segments; those of sharp corners have no length. */
-void fl_pen_rect(FlPen *pen, double x, double y, double w, double h, double rx, double ry);
+/** Eight segments; those of sharp corners have no length. Radii are clockwise from the top left. */
+void fl_pen_rect(FlPen *pen, double x, double y, double w, double h, const double rx[4],
+                 const double ry[4]);
 
 /** Adds the points attribute of a polyline or, if closed, of a polygon. Returns: false if there is
  * more than numbers in it. */

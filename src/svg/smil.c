@@ -112,9 +112,8 @@ static double place_in_round(const FlAnimation *a, const double *times, int n, d
 /** Returns: true for an attribute whose values cannot be interpolated. */
 static bool is_discrete(const char *name)
 {
-    static const char *const names[] = {"href", "class", "preserveAspectRatio", "in", "type", NULL};
     const FlCssProperty *property = fl_css_property(name);
-    return g_strv_contains(names, name) ||
+    return fl_css_has_word("href class preserveAspectRatio in type", name) ||
            (property && property->kind >= FL_CSS_ABSENT && property->kind <= FL_CSS_TEXT);
 }
 
@@ -215,24 +214,24 @@ static void apply_transform(const FlAnimation *a, double seconds)
     fl_set_attribute(a->target, a->attribute, all);
 }
 
-/** The path of animateMotion: its own, that of an <mpath>, or lines between its values. */
-static char *motion_path(const FlTimeline *timeline, const FlAnimation *a)
+/** The path of animateMotion: its own, that of an <mpath>, or lines between its values; NULL: none.
+ */
+static FlOutlines *motion_path(const FlTimeline *timeline, const FlAnimation *a)
 {
     for (const xmlNode *child = a->node->children; child; child = child->next) {
         if (!fl_is(child, "mpath"))
             continue;
         const xmlNode *path = fl_timeline_referred(timeline, child, NULL);
         const FlCssUnits units = {300, 150, 16, 16, 300, 150};
-        const FlAffine none = FL_AFFINE_NONE;
-        return path ? fl_css_outline_text(path, &units, &none) : NULL;
+        return path ? fl_css_outlines(path, &units) : NULL;
     }
-    char *path = fl_trimmed_attribute(a->node, "path");
+    g_autofree char *path = fl_trimmed_attribute(a->node, "path");
     if (path)
-        return path;
+        return fl_css_outlines_of_path(path);
     bool adds = true;
     g_auto(GStrv) values = values_of(a, "0,0", &adds);
-    g_autofree char *joined = g_strjoinv(" L", values);
-    return *joined ? g_strconcat("M", joined, NULL) : NULL;
+    g_autofree char *joined = g_strjoinv(" L", values), *d = g_strconcat("M", joined, NULL);
+    return *joined ? fl_css_outlines_of_path(d) : NULL;
 }
 
 /** keyPoints at a share of a round, else the share itself. */
@@ -258,19 +257,19 @@ static double key_point(const FlAnimation *a, double share)
 }
 
 /** The place at a share of a path, and the direction there; false: it is no path. */
-static bool place_at(const char *path, double share, FlPoint *place, double *direction)
+static bool place_at(const FlOutlines *path, double share, FlPoint *place, double *direction)
 {
     const FlCssUnits units = {0};
     g_autofree char *number = fl_css_number_text(CLAMP(share, 0, 0.9999999) * 100);
     g_autofree char *distance = g_strconcat(number, "%", NULL);
-    return fl_css_place_on_path(path, distance, &units, place, direction);
+    return fl_css_place_on(path, distance, &units, place, direction);
 }
 
 /** animateMotion: moves in front of the element's own transform. */
 static void apply_motion(const FlTimeline *timeline, const FlAnimation *a, double seconds)
 {
     const FlInterval *interval = fl_interval_at(a, seconds);
-    g_autofree char *path = interval ? motion_path(timeline, a) : NULL;
+    g_autoptr(FlOutlines) path = interval ? motion_path(timeline, a) : NULL;
     g_autofree char *rotate = fl_trimmed_attribute(a->node, "rotate");
     g_autoptr(xmlChar) own = fl_attribute(a->target, "transform");
     g_autofree char *accumulate = fl_trimmed_attribute(a->node, "accumulate");
@@ -323,19 +322,12 @@ static void apply(const FlAnimation *a, double seconds)
         apply_value(a, seconds);
 }
 
-/** Returns: true if an animateMotion has no effect, since a later one of its target has. */
-static bool is_replaced(const GPtrArray *order, guint i, double seconds)
+/** Returns: true for an animateMotion in effect that replaces those before it. */
+static bool replaces(const FlAnimation *a, double seconds)
 {
-    const FlAnimation *a = order->pdata[i];
-    bool replaced = false;
-    for (guint k = i + 1; k < order->len && !replaced; k++) {
-        const FlAnimation *b = order->pdata[k];
-        if (b->target != a->target || !fl_is(b->node, "animateMotion"))
-            continue;
-        g_autofree char *additive = fl_trimmed_attribute(b->node, "additive");
-        replaced = fl_interval_at(b, seconds) && g_strcmp0(additive, "sum") != 0;
-    }
-    return replaced;
+    g_autofree char *additive = fl_trimmed_attribute(a->node, "additive");
+    return fl_is(a->node, "animateMotion") && fl_interval_at(a, seconds) &&
+           g_strcmp0(additive, "sum") != 0;
 }
 
 void fl_smil_apply(xmlDoc *doc, double seconds, FlFilmLength *length)
@@ -346,14 +338,19 @@ void fl_smil_apply(xmlDoc *doc, double seconds, FlFilmLength *length)
         g_ptr_array_add(order, timeline.animation->pdata[i]);
     // a stable sort: the order of the document decides between equals
     g_ptr_array_sort_with_data(order, compare_begins, &seconds);
+    g_autoptr(GHashTable) first = g_hash_table_new(NULL, NULL); // target -> its motion that counts
     for (guint i = 0; i < order->len; i++) {
-        apply(order->pdata[i], seconds);
+        const FlAnimation *a = order->pdata[i];
+        apply(a, seconds);
+        if (replaces(a, seconds))
+            g_hash_table_insert(first, a->target, GUINT_TO_POINTER(i));
         if (length)
             fl_animation_add_length(order->pdata[i], length);
     }
     for (guint i = 0; i < order->len; i++) { // in front of all transforms
         const FlAnimation *a = order->pdata[i];
-        if (a->target && fl_is(a->node, "animateMotion") && !is_replaced(order, i, seconds))
+        if (a->target && fl_is(a->node, "animateMotion") &&
+            GPOINTER_TO_UINT(g_hash_table_lookup(first, a->target)) <= i)
             apply_motion(&timeline, a, seconds);
     }
     fl_timeline_clear(&timeline);

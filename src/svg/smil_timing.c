@@ -197,8 +197,7 @@ static void tell(const FlTimeline *timeline, int base, const FlInterval *interva
         const FlAnimation *a = timeline->animation->pdata[i];
         for (int ends = 0; ends < 2; ends++) {
             const GArray *list = ends ? a->end : a->begin;
-            for (guint k = 0; k < list->len; k++) {
-                const Condition *c = &g_array_index(list, Condition, k);
+            FL_EACH (const Condition, c, list) {
                 const double t = (c->at_end ? interval->end : interval->begin) + c->offset;
                 if (c->base == base && t < HORIZON)
                     add_time(ends ? a->ends : a->begins, t);
@@ -262,11 +261,9 @@ static void run(const FlTimeline *timeline)
 const FlInterval *fl_interval_at(const FlAnimation *a, double seconds)
 {
     const FlInterval *found = NULL;
-    for (guint i = 0; i < a->interval->len; i++) {
-        const FlInterval *interval = &g_array_index(a->interval, FlInterval, i);
+    FL_EACH (const FlInterval, interval, a->interval)
         if (interval->begin <= seconds + 1e-9)
             found = interval;
-    }
     return found && (seconds + 1e-9 < found->end || a->freezes) ? found : NULL;
 }
 

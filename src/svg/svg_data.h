@@ -9,12 +9,6 @@
 
 typedef struct FlSvg FlSvg;
 
-/** The combined coverage of a group's mask and the outer masks, on a page of that size. */
-typedef struct FlMaskCover {
-    cairo_surface_t *surface; // A8; NULL: not drawn yet
-    FlPageSize page;
-} FlMaskCover;
-
 struct FlSvg {
     char *path;
     double dpi;
@@ -26,9 +20,11 @@ struct FlSvg {
     int n_nameless;       // groups without an id
     GHashTable *variants; // handles of the document without some parts or masks
     FlLeaves *leaves;
-    FlMaskCover *cover; // by FlLeaves.mask; NULL: cannot be drawn
-    size_t cover_bytes; // of their surfaces
-    GPtrArray *files;   // that it refers to
+    GHashTable *cover; // index of FlLeaves.mask -> A8 surface: the combined coverage of that mask
+                       // and those around it; NULL: none was drawn
+    FlPageSize cover_page; // that they are on
+    size_t cover_bytes;    // of their surfaces
+    GPtrArray *files;      // that it refers to
 };
 
 /** A handle of the document with that text; NULL with FL_ERROR_INPUT. */

@@ -63,36 +63,25 @@ static bool draw_all(FlSvg *svg, cairo_t *cr, FlPageSize page, GError **error)
 
 #define MOST_COVER_BYTES (64 << 20) // that are kept of a frame
 
-static size_t bytes_of(cairo_surface_t *surface)
-{
-    return (size_t)cairo_image_surface_get_stride(surface) *
-           (size_t)cairo_image_surface_get_height(surface);
-}
-
-static void drop_cover(FlSvg *svg, int index)
-{
-    if (!svg->cover[index].surface)
-        return;
-    svg->cover_bytes -= bytes_of(svg->cover[index].surface);
-    g_clear_pointer(&svg->cover[index].surface, cairo_surface_destroy);
-}
-
 void fl_svg_drop_covers(FlSvg *svg)
 {
-    for (guint i = 0; svg->cover && i < svg->leaves->mask->len; i++)
-        drop_cover(svg, (int)i);
+    g_clear_pointer(&svg->cover, g_hash_table_unref);
+    svg->cover_bytes = 0;
 }
 
-/** Keeps a cover in place of what there was; too many make room first. */
-static void keep_cover(FlSvg *svg, int index, FlMaskCover cover)
+/** Keeps the cover of a mask on a page; too many, and those of another page, make room first. */
+static void keep_cover(FlSvg *svg, int index, cairo_surface_t *cover, FlPageSize page)
 {
-    const size_t bytes = bytes_of(cover.surface);
-    drop_cover(svg, index);
-    if (svg->cover_bytes + bytes > MOST_COVER_BYTES)
+    const size_t bytes = (size_t)cairo_image_surface_get_stride(cover) *
+                         (size_t)cairo_image_surface_get_height(cover);
+    if (svg->cover_bytes + bytes > MOST_COVER_BYTES || svg->cover_page.width != page.width ||
+        svg->cover_page.height != page.height)
         fl_svg_drop_covers(svg);
-    svg->cover[index] = cover;
+    if (!svg->cover)
+        svg->cover = g_hash_table_new_full(NULL, NULL, NULL, (GDestroyNotify)cairo_surface_destroy);
+    g_hash_table_insert(svg->cover, GINT_TO_POINTER(index), cairo_surface_reference(cover));
     svg->cover_bytes += bytes;
-    cairo_surface_reference(cover.surface);
+    svg->cover_page = page;
 }
 
 /** Draws the combined coverage of a mask and the outer masks, if any. */
@@ -116,9 +105,11 @@ static bool draw_cover(FlSvg *svg, const FlGroupMask *mask, cairo_surface_t *aro
 static cairo_surface_t *cover_of(FlSvg *svg, int index, FlPageSize page, int columns, int rows,
                                  GError **error)
 {
-    const FlMaskCover *known = &svg->cover[index];
-    if (known->surface && known->page.width == page.width && known->page.height == page.height)
-        return cairo_surface_reference(known->surface);
+    const bool same = svg->cover_page.width == page.width && svg->cover_page.height == page.height;
+    cairo_surface_t *known =
+        svg->cover && same ? g_hash_table_lookup(svg->cover, GINT_TO_POINTER(index)) : NULL;
+    if (known)
+        return cairo_surface_reference(known);
     const FlGroupMask *mask = &g_array_index(svg->leaves->mask, FlGroupMask, index);
     g_autoptr(cairo_surface_t) around =
         mask->around < 0 ? NULL : cover_of(svg, mask->around, page, columns, rows, error);
@@ -126,7 +117,7 @@ static cairo_surface_t *cover_of(FlSvg *svg, int index, FlPageSize page, int col
         mask->around < 0 || around ? fl_surface_new(CAIRO_FORMAT_A8, columns, rows, error) : NULL;
     if (!surface || !draw_cover(svg, mask, around, surface, page, error))
         return NULL;
-    keep_cover(svg, index, (FlMaskCover){surface, page});
+    keep_cover(svg, index, surface, page);
     return g_steal_pointer(&surface);
 }
 

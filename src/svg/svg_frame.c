@@ -56,7 +56,7 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
         return NULL;
     fl_fonts_add(svg->doc, svg->files);
     g_autoptr(GHashTable) ids = fl_document_name_groups(svg->doc, &svg->n_nameless);
-    if (!fl_document_normalise(svg->doc, options->whole, ids, path, number, warnings, error))
+    if (!fl_document_normalise(svg->doc, ids, path, number, warnings, error))
         return NULL;
     svg->leaves = fl_leaves_new(svg->doc, options->whole, g_steal_pointer(&ids));
     return g_steal_pointer(&svg);
@@ -70,7 +70,6 @@ FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, Fl
         return NULL;
     fl_document_branch(svg->doc);
     svg->variants = g_hash_table_new_full(NULL, NULL, NULL, g_object_unref);
-    svg->cover = g_new0(FlMaskCover, svg->leaves->mask->len + 1);
     size_t bytes = 0;
     g_autofree char *text = fl_document_text(svg->doc, &bytes);
     svg->handle = fl_svg_make_handle(svg, text, bytes, error);
@@ -84,7 +83,6 @@ void fl_svg_free(FlSvg *svg)
     g_clear_object(&svg->handle);
     g_clear_pointer(&svg->variants, g_hash_table_unref);
     fl_svg_drop_covers(svg);
-    g_free(svg->cover);
     fl_inheritance_clear(&svg->inheritance);
     g_clear_pointer(&svg->others, g_hash_table_unref);
     fl_leaves_free(svg->leaves);

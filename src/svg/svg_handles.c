@@ -97,8 +97,7 @@ static void flood_masks(xmlDoc *doc, const FlLeaves *leaves, int depth)
 {
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
     add_flood(doc);
-    for (guint i = 0; i < leaves->mask->len; i++) {
-        const FlGroupMask *mask = &g_array_index(leaves->mask, FlGroupMask, i);
+    FL_EACH (const FlGroupMask, mask, leaves->mask) {
         if (mask->depth != depth)
             continue;
         xmlNode *node = group_of(ids, mask);

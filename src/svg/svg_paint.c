@@ -226,8 +226,7 @@ static bool read_gradient(Reader *r, const xmlNode *gradient, double opacity, So
 
 static bool read_server(Reader *r, const xmlNode *server, double opacity, Source *source)
 {
-    static const char *const gradients[] = {"linearGradient", "radialGradient", NULL};
-    if (server && fl_is_one_of(server, gradients))
+    if (server && fl_is_one_of(server, "linearGradient radialGradient"))
         return read_gradient(r, server, opacity, source);
     if (!server || !fl_is(server, "pattern") || !with_content(r, server, NULL))
         return false;
@@ -359,9 +358,8 @@ static bool is_empty(const Reader *r, const xmlNode *node, const FlInherited *s)
 /** Returns: true if an element of a text has letters of its own. */
 static bool has_letters(const xmlNode *node)
 {
-    static const char *const texts[] = {"text", "tspan", NULL};
     bool found = false;
-    for (const xmlNode *child = node->children; child && !found && fl_is_one_of(node, texts);
+    for (const xmlNode *child = node->children; child && !found && fl_is_one_of(node, "text tspan");
          child = child->next)
         found = child->type != XML_ELEMENT_NODE && child->content &&
                 child->content[strspn((const char *)child->content, " \t\r\n")];
@@ -392,24 +390,11 @@ static void add_used(Reader *r, const xmlNode *use, const FlInherited *s, const 
         add_element(r, shown, &own, around);
 }
 
-/** The first child of a <switch> that is drawn. */
-static void add_chosen(Reader *r, const xmlNode *node, const FlInherited *s, const Around *around)
-{
-    const xmlNode *child = node->children;
-    while (child && !(child->type == XML_ELEMENT_NODE && fl_is_eligible(child)))
-        child = child->next;
-    if (!child)
-        return;
-    const FlInherited own = fl_inherited_from(&r->svg->inheritance, child, s);
-    add_element(r, child, &own, around);
-}
-
 /** Adds what an element draws without its children. */
 static void add_own(Reader *r, const xmlNode *node, const FlInherited *s, const Around *around)
 {
-    static const char *const areas[] = {"rect", "circle", "ellipse", NULL};
-    static const char *const lines[] = {"path", "line", "polyline", "polygon", NULL};
-    const bool line = fl_is_one_of(node, lines), area = fl_is_one_of(node, areas);
+    const bool line = fl_is_one_of(node, "path line polyline polygon"),
+               area = fl_is_one_of(node, "rect circle ellipse");
     const bool drawn = line || (area && !is_empty(r, node, s)) || has_letters(node);
     if (drawn && !s->hidden)
         add_shape(r, s, around);
@@ -420,7 +405,6 @@ static void add_own(Reader *r, const xmlNode *node, const FlInherited *s, const 
 /** Adds all that an element draws, bottom up. */
 static void add_element(Reader *r, const xmlNode *node, const FlInherited *s, const Around *outer)
 {
-    static const char *const texts[] = {"text", "tspan", NULL};
     Around around = within(outer, node);
     around.depth++;
     g_autofree char *display = fl_property(node, "display");
@@ -430,13 +414,11 @@ static void add_element(Reader *r, const xmlNode *node, const FlInherited *s, co
         add_image(r, &around);
     } else if (fl_is(node, "use")) {
         add_used(r, node, s, &around);
-    } else if (fl_is(node, "switch")) {
-        add_chosen(r, node, s, &around);
-    } else if (fl_is_container(node)) {
+    } else if (fl_is_container(node) || fl_is(node, "switch")) { // left in markers alone
         add_children(r, node, s, &around);
     } else {
         add_own(r, node, s, &around);
-        if (fl_is_one_of(node, texts))
+        if (fl_is_one_of(node, "text tspan"))
             add_children(r, node, s, &around);
     }
 }
@@ -453,8 +435,7 @@ static FlPainted join(const GArray *ops, int which, FlPart part)
 {
     FlPainted painted = {.part = part, .stroke = true};
     bool first = true;
-    for (guint i = 0; i < ops->len; i++) {
-        const Op *op = &g_array_index(ops, Op, i);
+    FL_EACH (const Op, op, ops) {
         if (which != 2 && op->stroke != (which == 1))
             continue;
         painted.stroke = painted.stroke && op->stroke;

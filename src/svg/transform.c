@@ -13,51 +13,6 @@ static double tangent(double degrees)
     return s / c;
 }
 
-static FlAffine rotation_about(double degrees, double x, double y)
-{
-    const FlAffine there = {1, 0, 0, 1, x, y}, back = {1, 0, 0, 1, -x, -y};
-    const FlAffine turn = fl_affine_rotation(degrees), on = fl_affine_multiply(&there, &turn);
-    return fl_affine_multiply(&on, &back);
-}
-
-/** The matrix of a function in the plane; false if it is unknown or has a wrong number of
- * arguments.
- */
-static bool map_of(const char *name, const double *v, int n, FlAffine *m)
-{
-#define IS(word, count) (g_ascii_strcasecmp(name, word) == 0 && (count))
-    if (IS("matrix", n == 6))
-        *m = (FlAffine){v[0], v[1], v[2], v[3], v[4], v[5]};
-    else if (IS("translate", n == 1 || n == 2))
-        *m = (FlAffine){1, 0, 0, 1, v[0], n > 1 ? v[1] : 0};
-    else if (IS("translateX", n == 1))
-        *m = (FlAffine){1, 0, 0, 1, v[0], 0};
-    else if (IS("translateY", n == 1))
-        *m = (FlAffine){1, 0, 0, 1, 0, v[0]};
-    else if (IS("scale", n == 1 || n == 2))
-        *m = (FlAffine){v[0], 0, 0, n > 1 ? v[1] : v[0], 0, 0};
-    else if (IS("scaleX", n == 1))
-        *m = (FlAffine){v[0], 0, 0, 1, 0, 0};
-    else if (IS("scaleY", n == 1))
-        *m = (FlAffine){1, 0, 0, v[0], 0, 0};
-    else if (IS("rotate", n == 1))
-        *m = fl_affine_rotation(v[0]);
-    else if (IS("rotate", n == 3))
-        *m = rotation_about(v[0], v[1], v[2]);
-    else if (IS("skewX", n == 1))
-        *m = (FlAffine){1, 0, tangent(v[0]), 1, 0, 0};
-    else if (IS("skewY", n == 1))
-        *m = (FlAffine){1, tangent(v[0]), 0, 1, 0, 0};
-    else if (IS("skew", n == 1 || n == 2))
-        *m = (FlAffine){1, n > 1 ? tangent(v[1]) : 0, tangent(v[0]), 1, 0, 0};
-    else
-        return false;
-    return true;
-#undef IS
-}
-
-/* ---- in space -------------------------------------------------------------------------------- */
-
 /** A matrix of homogeneous coordinates in space, by rows. */
 typedef struct Space {
     double m[4][4];
@@ -98,26 +53,58 @@ static bool rotation_in_space(const double axis[3], double degrees, Space *space
     return true;
 }
 
-/** The matrix of a function in space; false if it is unknown. */
-static bool map_of_space(const char *name, const double *v, int n, Space *space)
+/** Functions whose arguments are cells of the matrix, whose tangents are those of skews: the row
+ * and the column of each. */
+static const struct {
+    const char *name;
+    int least, most;
+    uint8_t cell[6];
+} by_cells[] = {
+    {"matrix", 6, 6, {0x00, 0x10, 0x01, 0x11, 0x03, 0x13}},
+    {"translate", 1, 2, {0x03, 0x13}},
+    {"translatex", 1, 1, {0x03}},
+    {"translatey", 1, 1, {0x13}},
+    {"translatez", 1, 1, {0x23}},
+    {"translate3d", 3, 3, {0x03, 0x13, 0x23}},
+    {"scale", 1, 2, {0x00, 0x11}},
+    {"scalex", 1, 1, {0x00}},
+    {"scaley", 1, 1, {0x11}},
+    {"scalez", 1, 1, {0x22}},
+    {"scale3d", 3, 3, {0x00, 0x11, 0x22}},
+    {"skew", 1, 2, {0x01, 0x10}},
+    {"skewx", 1, 1, {0x01}},
+    {"skewy", 1, 1, {0x10}},
+};
+
+/** The matrix of a function; false if it is unknown or has a wrong number of arguments. */
+static bool map_of(const char *name, const double *v, int n, Space *space)
 {
-    const FlAffine none = FL_AFFINE_NONE;
-    *space = space_of(&none);
+    const bool skews = g_str_has_prefix(name, "skew");
+    *space = space_of(&FL_AFFINE_NONE);
+    for (size_t k = 0; k < G_N_ELEMENTS(by_cells); k++) {
+        if (strcmp(name, by_cells[k].name) != 0)
+            continue;
+        for (int i = 0; i < MIN(n, by_cells[k].most); i++)
+            space->m[by_cells[k].cell[i] >> 4][by_cells[k].cell[i] & 15] =
+                skews ? tangent(v[i]) : v[i];
+        if (n == 1 && strcmp(name, "scale") == 0)
+            space->m[1][1] = v[0];
+        return n >= by_cells[k].least && n <= by_cells[k].most;
+    }
 #define IS(word, count) (strcmp(name, word) == 0 && n == (count))
-    if (IS("translate3d", 3))
-        space->m[0][3] = v[0], space->m[1][3] = v[1], space->m[2][3] = v[2];
-    else if (IS("translatez", 1))
-        space->m[2][3] = v[0];
-    else if (IS("scale3d", 3))
-        space->m[0][0] = v[0], space->m[1][1] = v[1], space->m[2][2] = v[2];
-    else if (IS("scalez", 1))
-        space->m[2][2] = v[0];
-    else if (IS("perspective", 1))
+    if (IS("perspective", 1))
         space->m[3][2] = v[0] > 0 ? -1 / fmax(v[0], 1) : 0;
-    else if (IS("rotatez", 1) || IS("rotatex", 1) || IS("rotatey", 1))
-        return rotation_in_space((double[]){name[6] == 'x', name[6] == 'y', name[6] == 'z'}, v[0],
-                                 space);
-    else if (IS("rotate3d", 4))
+    else if (IS("rotate", 1) || IS("rotatez", 1) || IS("rotatex", 1) || IS("rotatey", 1))
+        return rotation_in_space(
+            (double[]){name[6] == 'x', name[6] == 'y', name[6] != 'x' && name[6] != 'y'}, v[0],
+            space);
+    else if (IS("rotate", 3)) { // about a point
+        const FlAffine there = {1, 0, 0, 1, v[1], v[2]}, back = {1, 0, 0, 1, -v[1], -v[2]};
+        FlAffine turn = fl_affine_rotation(v[0]);
+        turn = fl_affine_multiply(&there, &turn);
+        turn = fl_affine_multiply(&turn, &back);
+        *space = space_of(&turn);
+    } else if (IS("rotate3d", 4))
         return rotation_in_space(v, v[3], space);
     else if (IS("matrix3d", 16))
         for (int i = 0; i < 16; i++)
@@ -176,15 +163,12 @@ static int read_numbers(const char *text, double *v)
 static bool read_function(const char *name, const char *arguments, const FlCssUnits *units,
                           Space *space)
 {
-    FlAffine plane;
     double v[MOST_ARGUMENTS];
     g_autofree char *lower = g_ascii_strdown(name, -1);
     const int n = units ? read_arguments(lower, arguments, units, v) : read_numbers(arguments, v);
-    if (n >= 0 && units && map_of_space(lower, v, n, space))
-        return true;
-    const bool good = n >= 0 && map_of(name, v, n, &plane);
-    *space = good ? space_of(&plane) : *space;
-    return good;
+    return n >= 0 &&
+           (units || fl_css_has_word("matrix translate scale rotate skewx skewy", lower)) &&
+           map_of(lower, v, n, space);
 }
 
 /** The map of the plane in a matrix, seen from straight above. Returns: false if it has a vanishing

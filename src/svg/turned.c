@@ -49,14 +49,12 @@ static void turn_blur(xmlNode *step, const FlAffine *m)
  * direction only. What is turned gets a filter of its own, whose blurs come out round. */
 static void mend_blur(Turned *t, xmlNode *node, const FlAffine *map)
 {
-    static const char *const filters[] = {"filter", NULL};
-    static const char *const steps[] = {"feGaussianBlur", "feDropShadow", NULL};
     g_autofree char *value = fl_property(node, "filter");
-    xmlNode *filter = fl_referred_by(value, filters, t->ids);
+    xmlNode *filter = fl_referred_by(value, "filter", t->ids);
     g_autofree char *units = filter ? fl_property(filter, "primitiveUnits") : NULL;
     bool blurs = false;
     FL_EACH_ELEMENT (step, filter)
-        blurs |= fl_is_one_of(step, steps);
+        blurs |= fl_is_one_of(step, "feGaussianBlur feDropShadow");
     if (!filter || !blurs || (units && strcmp(units, "objectBoundingBox") == 0))
         return;
     g_autofree char *id = g_strdup_printf("fl-turned-%d", t->n_made++);
@@ -66,7 +64,7 @@ static void mend_blur(Turned *t, xmlNode *node, const FlAffine *map)
     fl_declare(node, declaration);
     t->n_copied += count_elements(turned);
     FL_EACH_ELEMENT (step, turned)
-        if (fl_is_one_of(step, steps))
+        if (fl_is_one_of(step, "feGaussianBlur feDropShadow"))
             turn_blur(step, map);
 }
 
@@ -157,9 +155,8 @@ static void place_pattern(const Turned *t, xmlNode *own, const xmlNode *server, 
  * own in user units. */
 static void mend_paint(Turned *t, xmlNode *node, const char *property)
 {
-    static const char *const servers[] = {"linearGradient", "radialGradient", "pattern", NULL};
     g_autofree char *value = fl_inherited_property(node, property);
-    xmlNode *server = fl_referred_by(value, servers, t->ids);
+    xmlNode *server = fl_referred_by(value, "linearGradient radialGradient pattern", t->ids);
     const bool pattern = server && fl_is(server, "pattern");
     const bool in_box = server && (pattern ? is_in_box(t, server, "patternUnits", true) ||
                                                  is_in_box(t, server, "patternContentUnits", false)
@@ -184,13 +181,11 @@ static void mend_paint(Turned *t, xmlNode *node, const char *property)
 
 static void visit(Turned *t, xmlNode *node, const FlAffine *around)
 {
-    static const char *const shapes[] = {"path", "rect",     "circle",  "ellipse",
-                                         "line", "polyline", "polygon", NULL};
     const FlAffine own = fl_affine_of(node), map = fl_affine_multiply(around, &own);
     const bool upright = (map.xy == 0 && map.yx == 0) || (map.xx == 0 && map.yy == 0);
     if (!upright && map.xx * map.yy != map.xy * map.yx && t->n_copied < MOST_COPIED) {
         mend_blur(t, node, &map);
-        if (fl_is_one_of(node, shapes)) {
+        if (fl_is_one_of(node, "path rect circle ellipse line polyline polygon")) {
             mend_paint(t, node, "fill");
             mend_paint(t, node, "stroke");
         }

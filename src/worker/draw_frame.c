@@ -30,8 +30,8 @@ static bool boxes_meet(const float a[4], const float b[4])
 
 static bool meets(const Draw *draw, const FlRequest *frame, const FlDrawStep *step)
 {
-    for (guint i = 0; i < draw->steps->len; i++)
-        if (boxes_meet(frame->step[g_array_index(draw->steps, int, i)].box, step->box))
+    FL_EACH (const int, i, draw->steps)
+        if (boxes_meet(frame->step[*i].box, step->box))
             return true;
     return false;
 }
@@ -119,9 +119,8 @@ static FlRect step_box(const Stage *stage, const FlDrawStep *step)
 static FlRect draw_box(const Stage *stage, const Draw *draw)
 {
     FlRect all = {0};
-    for (guint i = 0; i < draw->steps->len; i++)
-        all = fl_rect_or(all,
-                         step_box(stage, &stage->frame->step[g_array_index(draw->steps, int, i)]));
+    FL_EACH (const int, i, draw->steps)
+        all = fl_rect_or(all, step_box(stage, &stage->frame->step[*i]));
     return all;
 }
 
@@ -317,8 +316,8 @@ static bool add_flat(const Stage *stage, int i, const Target *target, GError **e
 
 static bool draw_flat(const Stage *stage, const Draw *draw, const Target *target, GError **error)
 {
-    for (guint i = 0; i < draw->steps->len; i++)
-        if (!add_flat(stage, g_array_index(draw->steps, int, i), target, error))
+    FL_EACH (const int, i, draw->steps)
+        if (!add_flat(stage, *i, target, error))
             return false;
     return true;
 }
@@ -329,11 +328,10 @@ static bool add_steps_by_hand(const Stage *stage, const Draw *draw, const Target
 {
     uint8_t solid[256];
     fill_solid(solid, draw->drawn);
-    for (guint k = 0; k < draw->steps->len; k++) {
-        const int i = g_array_index(draw->steps, int, k);
-        const FlDrawStep *step = &stage->frame->step[i];
+    FL_EACH (const int, i, draw->steps) {
+        const FlDrawStep *step = &stage->frame->step[*i];
         const bool added = draw_step(stage, step, stage->coverage, error) &&
-                           add_by_hand(stage, i, solid, target, error);
+                           add_by_hand(stage, *i, solid, target, error);
         fl_surface_wipe(stage->coverage, step_box(stage, step));
         if (!added)
             return false;
@@ -349,9 +347,8 @@ static bool draw_picture(Stage *stage, const Draw *draw, const Target *target, G
         stage->picture = fl_surface_new(CAIRO_FORMAT_ARGB32, width, height, error);
     if (!stage->picture)
         return false;
-    for (guint i = 0; i < draw->steps->len; i++)
-        if (!draw_step(stage, &stage->frame->step[g_array_index(draw->steps, int, i)],
-                       stage->picture, error))
+    FL_EACH (const int, i, draw->steps)
+        if (!draw_step(stage, &stage->frame->step[*i], stage->picture, error))
             return false;
     const int stride = cairo_image_surface_get_stride(stage->picture);
     const unsigned char *drawn = cairo_image_surface_get_data(stage->picture);
@@ -421,8 +418,8 @@ static bool keep_drawn(const Target *target, FlDraw *out, GError **error)
 
 static bool has_hand(const Stage *stage, const Draw *draw)
 {
-    for (guint i = 0; stage->paths && i < draw->steps->len; i++)
-        if (stage->paths[g_array_index(draw->steps, int, i)])
+    FL_EACH (const int, i, draw->steps)
+        if (stage->paths && stage->paths[*i])
             return true;
     return false;
 }

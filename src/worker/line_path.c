@@ -71,11 +71,9 @@ static double outline_px(const FlOutlines *o, const FlGeometry *g)
 /** True if all coordinates are small enough for the computations. */
 static bool is_sane(const FlLinePaths *paths)
 {
-    for (guint k = 0; k < paths->point->len; k++) {
-        const FlLinePoint *p = &g_array_index(paths->point, FlLinePoint, k);
+    FL_EACH (const FlLinePoint, p, paths->point)
         if (!(fabsf(p->x) < MOST && fabsf(p->y) < MOST && p->far < MOST))
             return false;
-    }
     return true;
 }
 
@@ -120,8 +118,7 @@ typedef struct End {
 
 static void add_ends(const FlLinePaths *paths, GArray *ends)
 {
-    for (guint k = 0; k < paths->path->len; k++) {
-        FlLinePath *path = &g_array_index(paths->path, FlLinePath, k);
+    FL_EACH (FlLinePath, path, paths->path) {
         const FlLinePoint *point = &g_array_index(paths->point, FlLinePoint, path->first);
         for (int end = 0; end < 2 && !path->closed; end++) {
             const FlLinePoint *p = &point[end ? path->n - 1 : 0];

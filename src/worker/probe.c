@@ -33,7 +33,8 @@ bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, FlPageSize page, int width
     f->coverage = fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error);
     f->below =
         f->coverage ? fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error) : NULL;
-    f->check = f->below ? fl_self_check_new(f->all.width, f->all.height, error) : NULL;
+    f->check =
+        f->below ? fl_self_check_new(svg, f->page, f->all.width, f->all.height, error) : NULL;
     return f->check != NULL;
 }
 
@@ -186,8 +187,7 @@ static bool stack(FlFrameProbe *f, FlProbe *probe, FlRect ink, GError **error)
                 under[p] = fl_over(own[p], under[p]);
         }
     probe->found.covers = sum ? (float)covered / (255.0f * (float)sum) : 0;
-    return fl_self_check_add(f->check, f->svg, probe->leaf, &probe->found, f->coverage, ink,
-                             f->page, error);
+    return fl_self_check_add(f->check, probe->leaf, &probe->found, f->coverage, ink, error);
 }
 
 /** The same with the parts from `first` on, which are drawn again. */
@@ -278,9 +278,9 @@ static int is_separable(FlFrameProbe *f, const FlGroupUnit *unit, guint first, G
     g_autofree FlPiece *piece = g_new(FlPiece, n);
     for (guint i = 0; i < n; i++) {
         const FlProbe *probe = &g_array_index(f->probes, FlProbe, first + i);
-        piece[i] = (FlPiece){probe->leaf, probe->found.part, probe->found.blend_mode};
+        piece[i] = (FlPiece){probe->leaf, NULL, probe->found.part, probe->found.blend_mode};
     }
-    return fl_looks_alike(f->check, f->svg, &unit->leaf, piece, (int)n, f->page, error);
+    return fl_looks_alike(f->check, &unit->leaf, piece, (int)n, error);
 }
 
 bool fl_frame_probe_run(FlFrameProbe *f, GError **error)

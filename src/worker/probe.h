@@ -14,12 +14,12 @@ typedef enum FlVerdict {
     FL_VERDICT_DIFFERS,
 } FlVerdict;
 
-FlSelfCheck *fl_self_check_new(int width, int height, GError **error);
+FlSelfCheck *fl_self_check_new(FlSvg *svg, FlPageSize page, int width, int height, GError **error);
 void fl_self_check_free(FlSelfCheck *check); // NULL is fine
 
 /** Draws the next part over; coverage is its A8 rendering, not 0 in `box` only. */
-bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSurveyPart *part,
-                       cairo_surface_t *coverage, FlRect box, FlPageSize page, GError **error);
+bool fl_self_check_add(FlSelfCheck *check, const FlLeaf *leaf, const FlSurveyPart *part,
+                       cairo_surface_t *coverage, FlRect box, GError **error);
 
 /**
  * Compares with the file as it is, whether they differ visibly.
@@ -30,8 +30,7 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
  * by fl_leaf_key(), one a line. *leaf becomes that part's id in the file, which is the frame's;
  * NULL if it has none or nothing is drawn there.
  */
-FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, FlPageSize page, char **group,
-                               const char **leaf, GError **error);
+FlVerdict fl_self_check_finish(FlSelfCheck *check, char **group, const char **leaf, GError **error);
 
 /**
  * Returns: true if edges of masks are visibly harder than in the file. Each shape is masked by
@@ -42,9 +41,10 @@ bool fl_self_check_has_hard_masks(const FlSelfCheck *check);
 /** True if the difference is too large to paint the frame from its leaves. */
 bool fl_self_check_is_gross(const FlSelfCheck *check);
 
-/** A part to be drawn by fl_looks_alike(). */
+/** A part to be drawn. */
 typedef struct FlPiece {
-    const FlLeaf *leaf;
+    const FlLeaf *leaf; // NULL: the group of an id, as the file draws it; without an id all
+    const char *group;
     FlPart part;
     FlBlendMode blend_mode;
 } FlPiece;
@@ -55,8 +55,8 @@ typedef struct FlPiece {
  * differ at a mask's edge will not count in fl_self_check_finish().
  * Returns: 1 if they look the same, else 0; -1 with an error.
  */
-int fl_looks_alike(FlSelfCheck *check, FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n,
-                   FlPageSize page, GError **error);
+int fl_looks_alike(FlSelfCheck *check, const FlLeaf *group, const FlPiece *piece, int n,
+                   GError **error);
 
 /** A part under construction: as FlSurveyPart, but its strings still belong to the frame. */
 typedef struct FlProbe {

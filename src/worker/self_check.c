@@ -11,6 +11,8 @@
 #define EDGE 8 // one in so many pixels of a masked group may differ: those at the mask's edge
 
 struct FlSelfCheck {
+    FlSvg *svg; // borrowed
+    FlPageSize page;
     int width, height;
     bool gross, hard;
     int allowed; // pixels that differ at the edges of masks, where parts overlap
@@ -19,13 +21,17 @@ struct FlSelfCheck {
     uint16_t *top;  // width * height: 1 + index in pieces of the last part drawn there
 };
 
-FlSelfCheck *fl_self_check_new(int width, int height, GError **error)
+FlSelfCheck *fl_self_check_new(FlSvg *svg, FlPageSize page, int width, int height, GError **error)
 {
     cairo_surface_t *sum = fl_surface_new(CAIRO_FORMAT_ARGB32, width, height, error);
     if (!sum)
         return NULL;
     FlSelfCheck *check = g_new0(FlSelfCheck, 1);
-    *check = (FlSelfCheck){width, height, .sum = sum,
+    *check = (FlSelfCheck){svg,
+                           page,
+                           width,
+                           height,
+                           .sum = sum,
                            .pieces = g_array_new(FALSE, FALSE, sizeof(FlPiece)),
                            .top = g_new0(uint16_t, (size_t)width * height)};
     return check;
@@ -51,38 +57,38 @@ static void mix_pixel(uint32_t *below, uint32_t pixel, FlBlendMode blend_mode)
     *below = fl_blend(*below, rgb, pixel >> 24);
 }
 
-static bool draw_piece(FlSvg *svg, const FlPiece *piece, cairo_surface_t *surface, FlPageSize page,
+static bool draw_piece(const FlSelfCheck *check, const FlPiece *piece, cairo_surface_t *surface,
                        GError **error)
 {
-    const int width = cairo_image_surface_get_width(surface);
-    const int height = cairo_image_surface_get_height(surface);
     const bool plain = piece->blend_mode == FL_BLEND_MODE_OVER;
     /* A mixed one is drawn apart: librsvg mixes it only with what is in the group around it. */
     g_autoptr(cairo_surface_t) apart =
-        plain ? NULL : fl_surface_new(CAIRO_FORMAT_ARGB32, width, height, error);
+        plain ? NULL : fl_surface_new(CAIRO_FORMAT_ARGB32, check->width, check->height, error);
     if (!plain && !apart)
         return false;
     cairo_surface_mark_dirty(surface);
     cairo_t *cr = cairo_create(plain ? surface : apart);
-    const bool drawn = fl_svg_draw(svg, piece->leaf, piece->part, cr, page, error);
+    const bool drawn =
+        piece->leaf ? fl_svg_draw(check->svg, piece->leaf, piece->part, cr, check->page, error)
+                    : fl_svg_draw_group(check->svg, piece->group, cr, check->page, error);
     cairo_destroy(cr);
     cairo_surface_flush(plain ? surface : apart);
     uint32_t *below = (uint32_t *)cairo_image_surface_get_data(surface);
     const uint32_t *pixels = plain ? NULL : (const uint32_t *)cairo_image_surface_get_data(apart);
-    for (size_t p = 0; drawn && pixels && p < (size_t)width * height; p++)
+    for (size_t p = 0; drawn && pixels && p < (size_t)check->width * check->height; p++)
         if (pixels[p])
             mix_pixel(&below[p], pixels[p], piece->blend_mode);
     return drawn;
 }
 
-bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSurveyPart *part,
-                       cairo_surface_t *coverage, FlRect box, FlPageSize page, GError **error)
+bool fl_self_check_add(FlSelfCheck *check, const FlLeaf *leaf, const FlSurveyPart *part,
+                       cairo_surface_t *coverage, FlRect box, GError **error)
 {
     const unsigned char *own = cairo_image_surface_get_data(coverage);
     const int stride = cairo_image_surface_get_stride(coverage);
     uint32_t *sum = (uint32_t *)cairo_image_surface_get_data(check->sum);
     const bool flat = part->kind == FL_PAINT_FLAT && part->blend_mode == FL_BLEND_MODE_OVER;
-    const FlPiece piece = {leaf, part->part, part->blend_mode};
+    const FlPiece piece = {.leaf = leaf, .part = part->part, .blend_mode = part->blend_mode};
     g_array_append_val(check->pieces, piece);
     const uint16_t index = (uint16_t)MIN(check->pieces->len, UINT16_MAX);
     for (int y = box.y; y < box.y + box.height; y++)
@@ -94,7 +100,7 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
             if (cover)
                 check->top[p] = index;
         }
-    return flat || draw_piece(svg, &piece, check->sum, page, error);
+    return flat || draw_piece(check, &piece, check->sum, error);
 }
 
 static int difference(uint32_t a, uint32_t b)
@@ -105,17 +111,21 @@ static int difference(uint32_t a, uint32_t b)
     return most;
 }
 
-/** Draws leaves over each other; NULL with an error. */
-static cairo_surface_t *draw_pieces(FlSvg *svg, const FlPiece *piece, int n, int width, int height,
-                                    FlPageSize page, GError **error)
+/** Draws pieces over each other; NULL with an error. */
+static cairo_surface_t *draw_pieces(const FlSelfCheck *check, const FlPiece *piece, int n,
+                                    GError **error)
 {
-    g_autoptr(cairo_surface_t) surface = fl_surface_new(CAIRO_FORMAT_ARGB32, width, height, error);
+    g_autoptr(cairo_surface_t) surface =
+        fl_surface_new(CAIRO_FORMAT_ARGB32, check->width, check->height, error);
     bool drawn = surface != NULL;
     for (int i = 0; i < n && drawn; i++)
-        drawn = draw_piece(svg, &piece[i], surface, page, error);
-    if (!drawn)
-        return NULL;
-    return g_steal_pointer(&surface);
+        drawn = draw_piece(check, &piece[i], surface, error);
+    return drawn ? g_steal_pointer(&surface) : NULL;
+}
+
+static const uint32_t *pixels_of(cairo_surface_t *surface)
+{
+    return (const uint32_t *)cairo_image_surface_get_data(surface);
 }
 
 static bool is_masked(const FlLeaf *leaf)
@@ -140,18 +150,15 @@ static int count_inner(const uint32_t *a, const uint32_t *b, int width, int heig
     return n;
 }
 
-int fl_looks_alike(FlSelfCheck *check, FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n,
-                   FlPageSize page, GError **error)
+int fl_looks_alike(FlSelfCheck *check, const FlLeaf *group, const FlPiece *piece, int n,
+                   GError **error)
 {
     const int width = check->width, height = check->height;
-    const FlPiece whole = {group, FL_PART_WHOLE, FL_BLEND_MODE_OVER};
-    g_autoptr(cairo_surface_t) one = draw_pieces(svg, &whole, 1, width, height, page, error);
-    g_autoptr(cairo_surface_t) all =
-        one ? draw_pieces(svg, piece, n, width, height, page, error) : NULL;
+    g_autoptr(cairo_surface_t) one = draw_pieces(check, &(FlPiece){.leaf = group}, 1, error);
+    g_autoptr(cairo_surface_t) all = one ? draw_pieces(check, piece, n, error) : NULL;
     if (!all)
         return -1;
-    const uint32_t *a = (const uint32_t *)cairo_image_surface_get_data(one);
-    const uint32_t *b = (const uint32_t *)cairo_image_surface_get_data(all);
+    const uint32_t *a = pixels_of(one), *b = pixels_of(all);
     int ink = 0, visible = 0;
     for (size_t p = 0; p < (size_t)width * height; p++) {
         ink += a[p] != 0;
@@ -178,49 +185,29 @@ static int compare(const uint32_t *a, const uint32_t *b, size_t n, size_t *where
     return visible;
 }
 
-/** A group (NULL: the whole file) as the file draws the group; NULL with an error. */
-static cairo_surface_t *draw_truth(const FlSelfCheck *check, FlSvg *svg, const char *group,
-                                   FlPageSize page, GError **error)
+/** Counts the pixels in which one piece visibly differs from n others; -1 with an error. */
+static int count_differing(const FlSelfCheck *check, FlPiece whole, const FlPiece *piece, int n,
+                           GError **error)
 {
-    g_autoptr(cairo_surface_t) truth =
-        fl_surface_new(CAIRO_FORMAT_ARGB32, check->width, check->height, error);
-    if (!truth)
-        return NULL;
-    cairo_t *cr = cairo_create(truth);
-    const bool drawn = fl_svg_draw_group(svg, group, cr, page, error);
-    cairo_destroy(cr);
-    cairo_surface_flush(truth);
-    return drawn ? g_steal_pointer(&truth) : NULL;
-}
-
-/** Counts the pixels in which a picture visibly differs from n pieces drawn one by one; -1 with an
- * error, as of the picture if that is NULL. */
-static int count_differing(const FlSelfCheck *check, FlSvg *svg, cairo_surface_t *one,
-                           const FlPiece *piece, int n, FlPageSize page, GError **error)
-{
-    g_autoptr(cairo_surface_t) all =
-        one ? draw_pieces(svg, piece, n, check->width, check->height, page, error) : NULL;
+    g_autoptr(cairo_surface_t) one = draw_pieces(check, &whole, 1, error);
+    g_autoptr(cairo_surface_t) all = one ? draw_pieces(check, piece, n, error) : NULL;
     size_t where = 0;
-    return !all ? -1
-                : compare((const uint32_t *)cairo_image_surface_get_data(one),
-                          (const uint32_t *)cairo_image_surface_get_data(all),
-                          (size_t)check->width * check->height, &where);
+    return all ? compare(pixels_of(one), pixels_of(all), (size_t)check->width * check->height,
+                         &where)
+               : -1;
 }
 
 /** True if a group looks as its leaves do. */
-static FlVerdict judge(const FlSelfCheck *check, FlSvg *svg, const char *group, FlPageSize page,
-                       GError **error)
+static FlVerdict judge(const FlSelfCheck *check, const char *group, GError **error)
 {
     g_autoptr(GArray) inner = g_array_new(FALSE, FALSE, sizeof(FlPiece));
-    for (guint i = 0; i < check->pieces->len; i++) {
-        const FlPiece *piece = &g_array_index(check->pieces, FlPiece, i);
+    FL_EACH (const FlPiece, piece, check->pieces) {
         g_auto(GStrv) groups = g_strsplit(piece->leaf->groups, "\n", -1);
         if (g_strv_contains((const char *const *)groups, group))
             g_array_append_val(inner, *piece);
     }
-    g_autoptr(cairo_surface_t) truth = draw_truth(check, svg, group, page, error);
-    const int visible = count_differing(check, svg, truth, (const FlPiece *)inner->data,
-                                        (int)inner->len, page, error);
+    const int visible = count_differing(check, (FlPiece){.group = group},
+                                        (const FlPiece *)inner->data, (int)inner->len, error);
     return visible < 0                               ? FL_VERDICT_ERROR
            : visible > MOST_VISIBLE + check->allowed ? FL_VERDICT_DIFFERS
                                                      : FL_VERDICT_ALIKE;
@@ -231,8 +218,7 @@ static FlVerdict judge(const FlSelfCheck *check, FlSvg *svg, const char *group, 
  * the same. Groups inside a group with a mask cannot be checked alone: librsvg draws them without
  * the mask.
  */
-static bool find_group(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, FlPageSize page,
-                       char **group, GError **error)
+static bool find_group(const FlSelfCheck *check, const FlLeaf *leaf, char **group, GError **error)
 {
     g_auto(GStrv) groups = g_strsplit(leaf->groups, "\n", -1);
     bool masked = is_masked(leaf);
@@ -240,7 +226,7 @@ static bool find_group(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf,
         masked = masked && strcmp(groups[i], leaf->layer) != 0;
         if (masked)
             continue;
-        const FlVerdict verdict = judge(check, svg, groups[i], page, error);
+        const FlVerdict verdict = judge(check, groups[i], error);
         if (verdict == FL_VERDICT_ERROR)
             return false;
         if (verdict == FL_VERDICT_ALIKE)
@@ -277,8 +263,7 @@ static int parts_from(const FlSelfCheck *check, guint i)
  * If a leaf does not look as its parts do, such as a stroke over a fill below one opacity: it and
  * others like it, by fl_leaf_key(), one a line in *keys.
  */
-static bool find_leaves(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, FlPageSize page,
-                        char **keys, GError **error)
+static bool find_leaves(const FlSelfCheck *check, const FlLeaf *leaf, char **keys, GError **error)
 {
     g_autoptr(GString) list = g_string_new(NULL);
     bool found = false;
@@ -289,10 +274,7 @@ static bool find_leaves(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf
         if (n < 2)
             continue;
         judged++;
-        const FlPiece whole = {piece->leaf, FL_PART_WHOLE, FL_BLEND_MODE_OVER};
-        g_autoptr(cairo_surface_t) one =
-            draw_pieces(svg, &whole, 1, check->width, check->height, page, error);
-        const int visible = count_differing(check, svg, one, piece, n, page, error);
+        const int visible = count_differing(check, (FlPiece){.leaf = piece->leaf}, piece, n, error);
         const bool alike = visible <= MOST_VISIBLE;
         if (visible < 0)
             return false;
@@ -315,15 +297,13 @@ bool fl_self_check_is_gross(const FlSelfCheck *check)
     return check->gross;
 }
 
-FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, FlPageSize page, char **group,
-                               const char **leaf, GError **error)
+FlVerdict fl_self_check_finish(FlSelfCheck *check, char **group, const char **leaf, GError **error)
 {
-    g_autoptr(cairo_surface_t) truth = draw_truth(check, svg, NULL, page, error);
+    g_autoptr(cairo_surface_t) truth = draw_pieces(check, &(FlPiece){0}, 1, error);
     if (!truth)
         return FL_VERDICT_ERROR;
     size_t where = 0;
-    const uint32_t *is = (const uint32_t *)cairo_image_surface_get_data(truth);
-    const uint32_t *sum = (const uint32_t *)cairo_image_surface_get_data(check->sum);
+    const uint32_t *is = pixels_of(truth), *sum = pixels_of(check->sum);
     const size_t n = (size_t)check->width * (size_t)check->height;
     const int visible = compare(is, sum, n, &where);
     *group = NULL;
@@ -336,7 +316,7 @@ FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, FlPageSize page, 
         return FL_VERDICT_DIFFERS;
     const FlLeaf *top = g_array_index(check->pieces, FlPiece, check->top[where] - 1).leaf;
     *leaf = top->name[0] ? top->name : NULL;
-    const bool judged = find_leaves(check, svg, top, page, group, error) &&
-                        (*group || find_group(check, svg, top, page, group, error));
+    const bool judged =
+        find_leaves(check, top, group, error) && (*group || find_group(check, top, group, error));
     return judged ? FL_VERDICT_DIFFERS : FL_VERDICT_ERROR;
 }

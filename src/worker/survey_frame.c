@@ -92,7 +92,7 @@ static FlVerdict try_frame(Survey *s, FlFrameProbe *f, char **group, const char 
 {
     if (!open_frame(s, f, error) || !fl_frame_probe_run(f, error))
         return FL_VERDICT_ERROR;
-    return fl_self_check_finish(f->check, f->svg, f->page, group, leaf, error);
+    return fl_self_check_finish(f->check, group, leaf, error);
 }
 
 bool fl_has_group(char **groups, const char *group)
@@ -150,11 +150,9 @@ static char *isolated_groups(const FlFrameProbe *f, const FlSurveyFrame *frame)
 {
     const GArray *units = fl_svg_leaves(f->svg)->unit;
     GString *groups = g_string_new(NULL);
-    for (guint i = 0; i < units->len; i++) {
-        const FlGroupUnit *unit = &g_array_index(units, FlGroupUnit, i);
+    FL_EACH (const FlGroupUnit, unit, units)
         if (unit->isolated && !fl_has_group(frame->whole, unit->leaf.id))
             g_string_append_printf(groups, "%s%s", groups->len ? "\n" : "", unit->leaf.id);
-    }
     return g_string_free(groups, groups->len == 0);
 }
 
@@ -162,8 +160,7 @@ static char *isolated_groups(const FlFrameProbe *f, const FlSurveyFrame *frame)
 static void warn_of_units(const FlFrameProbe *f, const Survey *s)
 {
     const GArray *units = fl_svg_leaves(f->svg)->unit;
-    for (guint i = 0; i < units->len; i++) {
-        const FlGroupUnit *unit = &g_array_index(units, FlGroupUnit, i);
+    FL_EACH (const FlGroupUnit, unit, units) {
         const bool named = !g_str_has_prefix(unit->leaf.id, FL_GROUP_ID);
         if (unit->inseparable && unit->n > 1)
             fl_warnings_add(s->warnings, s->request->file, s->request->number,
