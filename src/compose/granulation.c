@@ -38,7 +38,7 @@ static int dry_amount(int amount, int32_t more)
  * and the first one stains, so that grain lies in patches. */
 static int heavy_at(const int8_t *play, int x)
 {
-    return play ? CLAMP(20 + play[x] * 3 / 4, 9, 54) : HEAVY_ONE;
+    return play ? CLAMP(21 + play[x] * 5 / 8, 10, 50) : HEAVY_ONE;
 }
 
 void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t *amounts,

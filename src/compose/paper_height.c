@@ -176,9 +176,10 @@ static void find_surface(const FlPaperPlace *place, const Stretch *at, const flo
     bend(place, at, &bumps);
     for (int i = 0; i < at->n; i++) {
         creases.x[i] = 1.7f * bumps.x[i], creases.y[i] = 1.7f * bumps.y[i];
+        bumps.x[i] *= .5f, bumps.y[i] *= .5f;
         teeth.x[i] = at->x[i] / (2.2f * p->stretch), teeth.y[i] = at->y[i] / 2.2f;
     }
-    octaves_at(place, KEY_BUMPS, &bumps, 3, 1, bump);
+    octaves_at(place, KEY_BUMPS, &bumps, 4, 1.2f, bump);
     noise_at(place, KEY_CREASES, &creases, crease);
     octaves_at(place, KEY_TOOTH, &teeth, 2, .8f, tooth);
     for (int i = 0; i < at->n; i++)

@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-#define FINE_PX 2.5f    // wider structures are not part of the tooth
+#define FINE_PX 4       // wider structures are not part of the tooth
 #define TOOTH_END 2.2f  // standard deviations
 #define PATCH_PX 256    // side of the patch whose spreads are those of a whole sheet
 #define SLOW_PX 8       // clouds and warmth are known every so many px

@@ -117,11 +117,11 @@ static inline float front_at(const Brush *brush, const Fields *slow, int i, floa
     const float strength = MAX(slow->plane[FL_WASH_FRONTS][i], 0);
     const float past = away + (4 - 2 * MIN(strength, 1)) * ragged;
     const float fine =
-        ragged_at(brush, 2.3f * slow->plane[FL_WASH_X][i], 2.3f * slow->plane[FL_WASH_Y][i]);
-    const float tongue = 4 + 32 * MAX(fine + .2f, 0), beyond = MAX(past, 0);
-    const float line = .5f * fl_smooth(1 - past / tongue) + .2f * fl_decay(beyond * .08f) +
+        ragged_at(brush, 3.5f * slow->plane[FL_WASH_X][i], 3.5f * slow->plane[FL_WASH_Y][i]);
+    const float tongue = 3 + 10 * (1.6f + ragged) * MAX(fine + .3f, 0), beyond = MAX(past, 0);
+    const float line = .6f * fl_smooth(1 - past / tongue) + .2f * fl_decay(beyond * .08f) +
                        .4f * fl_decay(beyond * .6f);
-    const float front = past < 0 ? fl_decay(MAX(-past, 0) * .7f) : line;
+    const float front = past < 0 ? fl_decay(MAX(-past, 0) * .8f) : line;
     const bool far = (away < -12) | (away > 60);
     return far ? 0 : strength * front;
 }
@@ -134,6 +134,11 @@ static inline float side_at(float away, float strength, float ragged)
     return fl_smooth(.5f + past / lost_px) - .5f;
 }
 
+static inline int whole_of(float x)
+{
+    return (int)x - (x < (float)(int)x);
+}
+
 /* The load of the brush, mostly within -1..1, with streaks of its hairs where it is dry. The edge
  * between two passes is in the middle of its width, so that a crisp one ends where it grows wide
  * and not as a patch of either. */
@@ -141,17 +146,18 @@ static inline float load_at(const Brush *brush, const Fields *slow, int i, float
 {
     const FlWash *wash = brush->wash;
     const float dry = fl_smooth(3 * slow->plane[FL_WASH_DRY][i]);
-    const float pass = slow->plane[FL_WASH_PASS][i] - .5f + .08f * ragged;
-    const int whole = (int)pass - (pass < (float)(int)pass), own = whole & (LOADS - 1);
+    const float place = slow->plane[FL_WASH_PASS][i] - .5f, pass = place + .08f * ragged;
+    const int whole = whole_of(pass), own = whole & (LOADS - 1);
     const float width = 1 - .97f * dry, part = pass - (float)whole;
     const float next = fl_smooth(.5f + (part - .5f) / width);
     const float along =
         wash->along[0] * slow->plane[FL_WASH_X][i] + wash->along[1] * slow->plane[FL_WASH_Y][i];
+    const float side = place - (float)whole_of(place); // of the brush, where hairs are finer
     const float hairs =
-        ragged_at(brush, slow->plane[FL_WASH_PASS][i] * wash->brush_px, .08f * along);
+        ragged_at(brush, 2 * wash->brush_px * (place - .75f * side * (1 - side)), .08f * along);
     return slow->plane[FL_WASH_LINES][i] *
            (brush->load[own] + (brush->load[own + 1] - brush->load[own]) * next +
-            (.14f + .5f * dry) * hairs);
+            (.14f + .42f * dry) * hairs * MIN(fabsf(hairs), 1));
 }
 
 /* The ln of the factor on the amount by a wash of strength 1, and the balance of the pigments, at a
@@ -169,7 +175,7 @@ static inline float tone_at(const Brush *brush, const Fields *slow, int i, float
     const float heavy = .05f * MAX(slow->plane[FL_WASH_HUE][i], 0);
     const float rough = lines * (slow->plane[FL_WASH_ROUGH][i] + heavy) * ragged;
     *hue = slow->plane[FL_WASH_HUE][i] + .4f * MAX(load, -1) + .3f * front + 3 * rough;
-    return slow->plane[FL_WASH_TONE][i] + .29f * load + .36f * front + rough +
+    return slow->plane[FL_WASH_TONE][i] + .29f * load + .48f * front + rough +
            .28f * MAX(style->tide, style->blooms) * lines * side;
 }
 

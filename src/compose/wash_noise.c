@@ -183,13 +183,14 @@ static void find_fronts(const FlWash *wash, const Places *at, Values values)
     for (int k = 0; k < near.n; k++)
         away[k] = all[which[k]];
     move_to_front(wash, &near, away, &front);
-    noise_at(fl_key(wash->key, KEY_LOBES), &front, wide, 0, 1, 1, lobe);
+    noise_at(fl_key(wash->key, KEY_LOBES), &front, wide, 0, 2, .6f, lobe);
     noise_at(fl_key(wash->key, KEY_FRONTS), &near, place, 0, 1, 1, place_of);
     noise_at(fl_key(wash->key, KEY_FRONTS + 100), &front, parts, 0, 1, 1, found);
     for (int k = 0; k < near.n; k++) {
         const int i = which[k];
         const float ends = fl_smooth(3 - 3 * fabsf(all[i]) / NEAR_PX);
-        const float here = fl_smooth(.6f + 1.5f * found[k]); // 0 where the front is lost
+        // 0 where the front is lost: less of a bloom's
+        const float here = fl_smooth(.6f + .6f * bloom[i] + 1.5f * found[k]);
         all[i] = away[k] - (14 - 8 * here) * (fabsf(lobe[k]) - .25f);
         fronts[i] = wash->style.tide * fl_smooth((place_of[k] + .05f) / .45f) * (1 - bloom[i]) +
                     wash->style.blooms * fl_smooth(.2f + place_of[k]) * bloom[i];
@@ -214,7 +215,7 @@ static void add_drops(const FlWashField *field, const Places *at, Values values)
         if (drop.kind < .3f || drop.kind > .55f)
             continue;
         const float paint = field->drops * fl_smooth(1.2f - far);
-        values[FL_WASH_TONE][i] += 1.2f * paint;
+        values[FL_WASH_TONE][i] += .8f * paint;
         values[FL_WASH_HUE][i] += paint;
     }
 }
