@@ -473,16 +473,50 @@ static double red_behind_coat(bool limb, const char *stain, const char *painted)
     return sum / (4 * 40);
 }
 
-/* The mean of blue less red, 8 px around a place. */
-static double blue_at(const FlPicture *picture, int x, int y)
+/* The mean of a channel, 8 px around a place. */
+static double mean_at(const FlPicture *picture, int x, int y, int channel)
 {
     double sum = 0;
-    for (int k = 0; k < 81; k++) {
-        const uint8_t *rgba =
-            picture->rgba + 4 * ((y - 4 + k / 9) * picture->width + x - 4 + k % 9);
-        sum += rgba[2] - rgba[0];
-    }
+    for (int k = 0; k < 81; k++)
+        sum += picture->rgba[4 * ((y - 4 + k / 9) * picture->width + x - 4 + k % 9) + channel];
     return sum / 81;
+}
+
+/* Blue less red. */
+static double blue_at(const FlPicture *picture, int x, int y)
+{
+    return mean_at(picture, x, y, 2) - mean_at(picture, x, y, 0);
+}
+
+/* By how much a red shape that has left changes a channel of what it was seen on, from x to
+ * x + width, which comes up by `rocks` px in every other frame. */
+static double change_on(const char *fill, int x, int width, int rocks, int channel)
+{
+    double mean[2];
+    for (int k = 0; k < 2; k++) {
+        g_auto(GStrv) frames = g_new0(char *, 9);
+        for (int f = 1; f <= 8; f++)
+            frames[f - 1] = g_strdup_printf("<path d='M%d %dh%dv36h%dz' fill='%s'/>"
+                                            "<path d='M%d 68h20v20h-20z' fill='#d33'/>",
+                                            x, 60 - rocks * (f % 2), width, -width, fill,
+                                            f < 7 ? 12 + 6 * f : 900);
+        FlPicture *picture = last_of(frames, 96, k ? "1" : "0", NULL);
+        mean[k] = mean_at(picture, 30, 78, channel);
+        fl_picture_free(picture);
+    }
+    return mean[1] - mean[0];
+}
+
+/* What spans the page and rests is ground, which stains darken; dark ground they thin. A face, and
+ * water that moves, are none. */
+static void test_ground(void)
+{
+    const double pale = change_on("#cdc", -9, 114, 0, 2), dark = change_on("#112", -9, 114, 0, 0);
+    g_test_message("blue of pale ground %+.1f, red of dark ground %+.1f", pale, dark);
+    g_assert_cmpfloat(pale, <, -4);
+    g_assert_cmpfloat(dark, >, 2);
+    g_assert_cmpfloat(change_on("#cdc", 2, 92, 0, 2), ==, 0);
+    g_assert_cmpfloat(fabs(change_on("#cdc", -9, 114, 2, 2)), <, 0.5);
 }
 
 /* A stain at the top of the page turns with the ground, clockwise by 32 degrees. */
@@ -785,6 +819,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/marks-fade-until-none-is-left", test_dries);
     g_test_add_func("/wet/marks-and-grain-move-with-the-paper", test_moved);
     g_test_add_func("/wet/a-stain-turns-with-the-ground", test_camera);
+    g_test_add_func("/wet/ground-is-stained-and-a-face-is-not", test_ground);
     g_test_add_func("/wet/a-stain-stays-in-place-between-cells", test_part_of_a_cell);
     g_test_add_func("/wet/the-paper-turns-with-the-camera", test_turned);
     return g_test_run();

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #define NO_DRAW (-1)
+#define LIFT 150            // of 255: wet marks thin the ground where it is darker
 #define STAIN "paper_stain" // region names have no underscore
 #define BLEED_PX 8          // reach of colours into transparency, for frames that are scaled later
 
@@ -41,6 +42,7 @@ static bool stain_layer(const Stack *stack, int k, GError **error)
                        .coverage = coverage,
                        .owns_coverage = true,
                        .alpha = 255,
+                       .lift = LIFT,
                        .stacking = k > 0 ? FL_STACKING_GLAZE : FL_STACKING_OVER,
                        .blend_mode = FL_BLEND_MODE_OVER};
     if (!coverage || !(layer->rgba = fl_alloc_unset(4 * n, 1, "a stain", error)))

@@ -254,16 +254,19 @@ static void sum_backdrop(const FlBackdrop *backdrop, const FlTransfer *scale, in
             planes[k][x] = planes[k][0];
 }
 
-/** The layer's pixel that adds the density of a glaze to the colour below. */
+/** The layer's pixel that adds the density of a glaze to the colour below, where it thins paint
+ * that is darker than it would be on paper. */
 static void glaze_pixel(const Sum *below, const FlTransfer *scale, const uint8_t *paper,
-                        uint8_t *rgba)
+                        uint8_t lift, uint8_t *rgba)
 {
     uint8_t under[3], target[3], lifted[4];
     for (int c = 0; c < 3; c++) {
         under[c] = fl_transfer_level(scale, sum_value(below, c));
         const int32_t p = scale->value[paper[c]], k = scale->value[rgba[c]];
         const int thin = fl_transfer_level(scale, p + (int64_t)(k - p) * rgba[3] / 255);
-        target[c] = (uint8_t)MIN((under[c] * thin + paper[c] / 2) / MAX(paper[c], 1), 255);
+        const int dense = (under[c] * thin + paper[c] / 2) / MAX(paper[c], 1);
+        const int lifted_by = MAX(thin - under[c], 0) * scaled(lift, rgba[3]) / 255;
+        target[c] = (uint8_t)MIN(dense + lifted_by, 255);
     }
     fl_unblend(scale, target, under, 0, lifted);
     memcpy(rgba, lifted, 4);
@@ -312,7 +315,7 @@ static void resolve_colours(FlLayer *layers, int n, int width, int y, const FlSt
                 blend_pixel(&under, below.drawn[box.x + x], scale, layer->blend_mode, row + 4 * x);
             else if (layer->stacking == FL_STACKING_GLAZE &&
                      layer->blend_mode == FL_BLEND_MODE_OVER)
-                glaze_pixel(&under, scale, params->paper, row + 4 * x);
+                glaze_pixel(&under, scale, params->paper, layer->lift, row + 4 * x);
         }
         sum_row(layer, 1, scale, y, &below.sums);
         add_shape(layer, span, layer->coverage + (size_t)(y - box.y) * box.width,

@@ -36,6 +36,7 @@ typedef struct FlLayer {
     bool yields;             // opaque over the background; layers below it are seen as through
                              // transparent paint
     uint8_t alpha;           // opacity of the layer, 255 opaque
+    uint8_t lift;            // of a glaze: share of the darker paint below that it takes up, 0..255
     FlStacking stacking;     // a layer with a blend mode hides no pixels, whatever this says
     FlBlendMode blend_mode;  // with the layers below
 } FlLayer;

@@ -274,23 +274,57 @@ static void find_class_words(FlDrawing *drawing, const FlSurvey *survey)
     }
 }
 
+#define HELD_PX 0.2f // of the sides and the middle of a shape that stays as it is
+
+/** The place of a region's leaves in a frame: all boxes, the sum of their sides and middles. */
+typedef struct Place {
+    float box[4], sides[4], middle[2], area_px;
+} Place;
+
+static void add_part(Place *place, const FlSurveyPart *part)
+{
+    for (int k = 0; k < 4; k++) {
+        const bool out = k < 2 ? part->box[k] < place->box[k] : part->box[k] > place->box[k];
+        place->box[k] = out || place->area_px <= 0 ? part->box[k] : place->box[k];
+        place->sides[k] += part->box[k];
+    }
+    place->middle[0] += part->pose.middle_x, place->middle[1] += part->pose.middle_y;
+    place->area_px += part->area_px;
+}
+
+/** Says if a region spans the page from side to side, and is where it was, as large as it was. */
+static bool stays(const Place *first, const Place *now, const FlPageSize *page)
+{
+    bool held = fabsf(now->area_px - first->area_px) < 1e-3f * first->area_px;
+    for (int k = 0; k < 4; k++)
+        held = held && fabsf(now->sides[k] - first->sides[k]) < HELD_PX;
+    for (int k = 0; k < 2; k++)
+        held = held && fabsf(now->middle[k] - first->middle[k]) < HELD_PX;
+    return held && ((now->box[0] < 1 && now->box[2] > (float)page->width - 1) ||
+                    (now->box[1] < 1 && now->box[3] > (float)page->height - 1));
+}
+
 /** Counts frames, leaves and area of the regions. */
 static void measure(FlDrawing *drawing, const FlSurvey *survey)
 {
     const guint n = drawing->regions->len;
     g_autofree int *leaves = g_new(int, n + 1);
+    g_autofree Place *first = g_new0(Place, n + 1), *now = g_new(Place, n + 1);
     for (int t = 0; t < survey->n_frames; t++) {
         memset(leaves, 0, n * sizeof *leaves);
+        memset(now, 0, n * sizeof *now);
         FL_EACH (const FlSurveyPart, s, survey->frame[t].parts) {
             if (s->region < 0)
                 continue;
             leaves[s->region]++;
             g_array_index(drawing->regions, FlRegion, s->region).area_px += s->area_px;
+            add_part(&now[s->region], s);
         }
         for (guint r = 0; r < n; r++) {
             FlRegion *region = &g_array_index(drawing->regions, FlRegion, r);
             if (leaves[r] > 0 && region->n_present++ == 0)
-                region->first_frame = t;
+                region->first_frame = t, region->stays = true, first[r] = now[r];
+            region->stays = region->stays && stays(&first[r], &now[r], &survey->frame[t].page);
             region->n_leaves = MAX(region->n_leaves, leaves[r]);
         }
     }

@@ -523,7 +523,8 @@ bool fl_plan_choose_styles(FlPlan *plan, GError **error)
     g_free(shapes->ground);
     shapes->ground = g_new0(bool, MAX(n_regions, 1));
     for (int r = 0; r < n_regions; r++)
-        shapes->ground[r] = fl_shapes_share_of_page(shapes, r) > FL_GROUND_SHARE;
+        shapes->ground[r] = fl_drawing_region(shapes->drawing, r)->stays ||
+                            fl_shapes_share_of_page(shapes, r) > FL_GROUND_SHARE;
     shapes->surround =
         fl_surround_new(n_regions, shapes->n_frames, shapes->width, shapes->height, error);
     shapes->masks = shapes->surround ? fl_surround_masks(shapes->surround) : NULL;
