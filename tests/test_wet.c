@@ -496,10 +496,11 @@ static double change_on(const char *fill, int x, int width, int rocks, int chann
     for (int k = 0; k < 2; k++) {
         g_auto(GStrv) frames = g_new0(char *, 9);
         for (int f = 1; f <= 8; f++)
-            frames[f - 1] = g_strdup_printf("<path d='M%d %dh%dv36h%dz' fill='%s'/>"
-                                            "<path d='M%d 68h20v20h-20z' fill='#d33'/>",
-                                            x, 60 - rocks * (f % 2), width, -width, fill,
-                                            f < 7 ? 12 + 6 * f : 900);
+            frames[f - 1] = g_strdup_printf(
+                "<path d='M70 9h9v9h-9z' fill='#c93'/>" // below the ground
+                "<path d='M%d %dh%dv36h%dz' fill='%s'/>"
+                "<path d='M%d 68h20v20h-20z' fill='#d33'/>",
+                x, 60 - rocks * (f % 2), width, -width, fill, f < 7 ? 12 + 6 * f : 900);
         FlPicture *picture = last_of(frames, 96, k ? "1" : "0", NULL);
         mean[k] = mean_at(picture, 30, 78, channel);
         fl_picture_free(picture);

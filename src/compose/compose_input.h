@@ -10,8 +10,8 @@
 #include "compose/paper_sheet.h"
 #include "drawing/drawing.h"
 
-/** The stain that wet paint has left on the paper: a layer below all paint but that of the
- * ground. */
+/** The stain that wet paint has left on the paper: a layer below all paint but that of the ground,
+ * and one over each ground above other paint. */
 typedef struct FlStainLayer {
     FlRect box;
     uint8_t *rgba;      // of the box, straight, over the paper; NULL: no stain

@@ -9,7 +9,7 @@
 #include "compose/wash.h"
 #include <string.h>
 
-#define NO_DRAW (-1)
+#define NO_DRAW (-1)        // of the stain over paper and ground; -2 - d: over the ground of draw d
 #define LIFT 150            // of 255: wet marks thin the ground where it is darker
 #define STAIN "paper_stain" // region names have no underscore
 #define BLEED_PX 8          // reach of colours into transparency, for frames that are scaled later
@@ -18,7 +18,7 @@
 typedef struct Stack {
     FlComposite *composite;
     FlLayerSources sources;
-    int *draw; // the index in the draw list of each layer; NO_DRAW: it is the stain
+    int *draw; // the index in the draw list of each layer; NO_DRAW and below: it is the stain
 } Stack;
 
 /* The region's name, with a number from its second layer on. */
@@ -31,14 +31,38 @@ static char *layer_name(const FlComposeInput *input, const FlDrawList *draws, in
     return earlier == 0 ? g_strdup(name) : g_strdup_printf("%s-%d", name, earlier + 1);
 }
 
+/* The part of a stain that a layer has: all of it, or as much of it as lies over a draw. */
+static FlRect stain_box(const Stack *stack, int k)
+{
+    const FlRect whole = stack->sources.input->stain->box;
+    const int over = NO_DRAW - 1 - stack->draw[k];
+    return over < 0 ? whole : fl_rect_and(whole, stack->composite->draws->draw[over].area.box);
+}
+
+/* Leaves of a stain what lies over a draw. */
+static void clip_stain(FlLayer *layer, const FlDraw *draw)
+{
+    const FlRect box = layer->area.box, from = draw->area.box;
+    uint8_t *coverage = (uint8_t *)layer->coverage, *rgba = layer->rgba;
+    for (int y = box.y; y < box.y + box.height; y++)
+        for (int x = box.x; x < box.x + box.width; x++, coverage++, rgba += 4) {
+            const size_t at = (size_t)(y - from.y) * (size_t)from.width + (size_t)(x - from.x);
+            *coverage = draw->coverage[at];
+            rgba[3] = (uint8_t)(rgba[3] * *coverage * draw->alpha / (255 * 255));
+            if (rgba[3] == 0)
+                memset(rgba, 0, 4);
+        }
+}
+
 /* The stain, in the size of the frame; as a glaze if it lies on the ground. */
 static bool stain_layer(const Stack *stack, int k, GError **error)
 {
     const FlStainLayer *stain = stack->sources.input->stain;
-    const size_t n = fl_rect_pixels(stain->box);
+    const FlRect box = stain_box(stack, k);
+    const size_t n = fl_rect_pixels(box), row = 4 * (size_t)box.width;
     uint8_t *coverage = fl_alloc_unset(n, 1, "a stain", error);
     FlLayer *layer = &stack->composite->layers[k];
-    *layer = (FlLayer){.area = {.box = stain->box},
+    *layer = (FlLayer){.area = {.box = box},
                        .coverage = coverage,
                        .owns_coverage = true,
                        .alpha = 255,
@@ -48,7 +72,13 @@ static bool stain_layer(const Stack *stack, int k, GError **error)
     if (!coverage || !(layer->rgba = fl_alloc_unset(4 * n, 1, "a stain", error)))
         return false;
     memset(coverage, 255, n);
-    memcpy(layer->rgba, stain->rgba, 4 * n);
+    for (int y = 0; y < box.height; y++)
+        memcpy(layer->rgba + (size_t)y * row,
+               stain->rgba + 4 * ((size_t)(box.y - stain->box.y + y) * (size_t)stain->box.width +
+                                  (size_t)(box.x - stain->box.x)),
+               row);
+    if (stack->draw[k] < NO_DRAW)
+        clip_stain(layer, &stack->composite->draws->draw[NO_DRAW - 1 - stack->draw[k]]);
     return true;
 }
 
@@ -57,7 +87,7 @@ static bool paint_one(void *data, int k, int thread, GError **error)
 {
     const Stack *stack = data;
     FlLayer *layer = &stack->composite->layers[k];
-    if (stack->draw[k] == NO_DRAW)
+    if (stack->draw[k] <= NO_DRAW)
         return stain_layer(stack, k, error);
     return fl_layer_paint(layer, &stack->sources, stack->draw[k], error) &&
            fl_fade_find(layer, error);
@@ -65,8 +95,8 @@ static bool paint_one(void *data, int k, int thread, GError **error)
 
 static size_t layer_pixels(const Stack *stack, int k)
 {
-    return fl_rect_pixels(stack->draw[k] == NO_DRAW
-                              ? stack->sources.input->stain->box
+    return fl_rect_pixels(stack->draw[k] <= NO_DRAW
+                              ? stain_box(stack, k)
                               : stack->composite->draws->draw[stack->draw[k]].area.box);
 }
 
@@ -95,7 +125,7 @@ static bool make_some(Stack *stack, int first, int end, FlUnderlay *above, GErro
     bool done = true;
     for (int k = end - 1; k >= first && done; k--) {
         FlLayer *layer = &stack->composite->layers[k];
-        if (stack->draw[k] == NO_DRAW)
+        if (stack->draw[k] <= NO_DRAW)
             continue;
         fl_layer_begin(layer, &stack->sources, stack->draw[k]);
         done = fl_underlay_next(above, layer, is_painted(stack, k), error);
@@ -117,7 +147,7 @@ static bool needs_all(const Stack *stack)
     const FlComposeInput *input = stack->sources.input;
     bool all = false;
     for (int k = 0; k < stack->composite->n_layers && !all; k++) {
-        if (stack->draw[k] == NO_DRAW) {
+        if (stack->draw[k] <= NO_DRAW) {
             all = k > 0;
             continue;
         }
@@ -216,23 +246,33 @@ static bool is_layer(const FlComposeInput *input, const FlDraw *draw)
     return p != FL_LEFT_OUT && (p < 0 || input->painted[p]->from != FL_FROM_NOWHERE);
 }
 
-/* Puts the stain in its place among the layers: over the ground alone. */
-static void insert_stain(FlComposite *composite, const FlComposeInput *input, int *draw)
+static void add_layer(FlComposite *composite, int *draw, char *name, int index)
 {
-    const FlStainLayer *stain = input->stain;
-    int ground = 0;
-    if (!stain || !stain->rgba)
-        return;
-    while (ground < composite->n_layers &&
-           stain->ground[composite->draws->draw[draw[ground]].region])
-        ground++;
-    const size_t above = (size_t)(composite->n_layers - ground);
-    memmove(draw + ground + 1, draw + ground, above * sizeof *draw);
-    memmove(composite->names + ground + 1, composite->names + ground,
-            above * sizeof *composite->names);
-    draw[ground] = NO_DRAW;
-    composite->names[ground] = g_strdup(STAIN);
-    composite->n_layers++;
+    composite->names[composite->n_layers] = name;
+    draw[composite->n_layers++] = index;
+}
+
+/* Lists the layers: a stain lies over paper and ground at the bottom, and over ground above figures
+ * as far as that reaches. */
+static void list_layers(FlComposite *composite, const FlComposeInput *input, int *draw)
+{
+    const FlDrawList *draws = composite->draws;
+    const FlStainLayer *stain = input->stain && input->stain->rgba ? input->stain : NULL;
+    bool bottom = stain;
+    int stains = 1;
+    for (int r = 0; r < draws->n; r++) {
+        const bool ground = stain && stain->ground[draws->draw[r].region];
+        if (!is_layer(input, &draws->draw[r]))
+            continue;
+        if (bottom && !ground)
+            add_layer(composite, draw, g_strdup(STAIN), NO_DRAW);
+        bottom = bottom && ground;
+        add_layer(composite, draw, layer_name(input, draws, r), r);
+        if (ground && !bottom && fl_rect_meet(stain->box, draws->draw[r].area.box))
+            add_layer(composite, draw, g_strdup_printf(STAIN "-%d", ++stains), NO_DRAW - 1 - r);
+    }
+    if (bottom)
+        add_layer(composite, draw, g_strdup(STAIN), NO_DRAW);
 }
 
 /* Notes the paint of a frame for the stains of the next one. */
@@ -242,7 +282,7 @@ static void note_laid(const FlComposite *composite, const FlComposeInput *input,
         return;
     fl_laid_begin(input->laid);
     for (int k = 0; k < composite->n_layers; k++) {
-        const int region = draw[k] == NO_DRAW ? -1 : composite->draws->draw[draw[k]].region;
+        const int region = draw[k] <= NO_DRAW ? -1 : composite->draws->draw[draw[k]].region;
         if (region >= 0 && input->painted_of[region] >= 0)
             fl_laid_add(input->laid, &composite->layers[k], region, input->background->paper);
     }
@@ -253,19 +293,15 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
                         const int *exposures, GError **error)
 {
     const FlDrawList *draws = composite->draws;
-    composite->layers = g_new0(FlLayer, draws->n + 1);
-    composite->names = g_new0(char *, draws->n + 2);
-    g_autofree int *draw = g_new0(int, draws->n + 1);
-    for (int r = 0; r < draws->n; r++)
-        if (is_layer(input, &draws->draw[r])) {
-            composite->names[composite->n_layers] = layer_name(input, draws, r);
-            draw[composite->n_layers++] = r;
-        }
-    insert_stain(composite, input, draw);
-    composite->regions = g_new0(const char *, draws->n + 2);
+    const int most = 2 * draws->n + 2; // each may have a stain, and the last one has no name
+    composite->layers = g_new0(FlLayer, most);
+    composite->names = g_new0(char *, most);
+    g_autofree int *draw = g_new0(int, most);
+    list_layers(composite, input, draw);
+    composite->regions = g_new0(const char *, most);
     for (int k = 0; k < composite->n_layers; k++)
         composite->regions[k] =
-            draw[k] == NO_DRAW
+            draw[k] <= NO_DRAW
                 ? composite->names[k]
                 : fl_drawing_region(input->drawing, draws->draw[draw[k]].region)->name;
     g_auto(FlWashes) washes = {0};
