@@ -298,12 +298,38 @@ static FlMotionKind motion_of_same(const Pair *p, FlAffine *back)
                                                                   : FL_MOTION_SAME;
 }
 
+static FlLeafMeasure *measure_leaves(const FlOutlines *o)
+{
+    FlLeafMeasure *all = g_new0(FlLeafMeasure, o->n_leaves + 1);
+    for (int i = 0; i < o->n_leaves; i++) {
+        const FlGeometry *g = &o->leaf[i];
+        FlLeafMeasure *m = &all[i];
+        *m = (FlLeafMeasure){HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+        for (int k = g->first_subpath; k < g->first_subpath + g->n_subpaths; k++) {
+            const FlSubpath *s = &o->subpath[k];
+            for (int c = s->first; c < s->first + s->n; c++)
+                for (int t = 0; t < 4; t++) {
+                    const FlPoint p = fl_cubic_at(&o->cubic[c], &g->ctm, t / 3.0);
+                    m->x0 = MIN(m->x0, p.x), m->x1 = MAX(m->x1, p.x);
+                    m->y0 = MIN(m->y0, p.y), m->y1 = MAX(m->y1, p.y);
+                }
+        }
+    }
+    return all;
+}
+
+static double diagonal_of(const FlLeafMeasure *m)
+{
+    const double w = m->x1 - m->x0, h = m->y1 - m->y0;
+    return w >= 0 && h >= 0 ? sqrt(w * w + h * h) : 0;
+}
+
 /** True if a pair moves implausibly far. */
 static bool jumps(const FlTwoFrames *f, const FlLeafMeasure *a, const FlLeafMeasure *b)
 {
     const double dx = (a->x0 + a->x1 - b->x0 - b->x1) / 2, dy = (a->y0 + a->y1 - b->y0 - b->y1) / 2;
     const double far = sqrt(dx * dx + dy * dy);
-    return far > fl_measure_diagonal(b) / 2 && far > 0.05 * f->side;
+    return far > diagonal_of(b) / 2 && far > 0.05 * f->side;
 }
 
 static bool are_named_alike(const FlGeometry *a, const FlGeometry *b)
@@ -418,8 +444,8 @@ FlCorrespondence *fl_correspond(const FlTwoFrames *frames)
     FlCorrespondence *out = g_new(FlCorrespondence, 1);
     *out = (FlCorrespondence){n, g_new0(FlLeafMotion, n + 1),
                               g_new0(int32_t, frames->now->n_subpaths + 1)};
-    g_autofree FlLeafMeasure *before = fl_measure_leaves(frames->before);
-    g_autofree FlLeafMeasure *now = fl_measure_leaves(frames->now);
+    g_autofree FlLeafMeasure *before = measure_leaves(frames->before);
+    g_autofree FlLeafMeasure *now = measure_leaves(frames->now);
     Work w = {frames, before, now, out};
     pair_leaves(frames, out);
     g_autofree Count *count = count_leaves(&w);
@@ -494,33 +520,4 @@ void fl_samples_take(FlSamples *out, const FlOutlines *before, const FlGeometry 
             }
         }
     }
-}
-
-/* ---- measures -------------------------------------------------------------------------------- */
-
-FlLeafMeasure *fl_measure_leaves(const FlOutlines *o)
-{
-    FlLeafMeasure *all = g_new0(FlLeafMeasure, o->n_leaves + 1);
-    for (int i = 0; i < o->n_leaves; i++) {
-        const FlGeometry *g = &o->leaf[i];
-        FlLeafMeasure *m = &all[i];
-        *m = (FlLeafMeasure){HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL, 0xcbf29ce484222325u};
-        for (int k = g->first_subpath; k < g->first_subpath + g->n_subpaths; k++) {
-            const FlSubpath *s = &o->subpath[k];
-            m->structure = (m->structure ^ (uint64_t)s->n) * 0x100000001b3u + (uint64_t)s->closed;
-            for (int c = s->first; c < s->first + s->n; c++)
-                for (int t = 0; t < 4; t++) {
-                    const FlPoint p = fl_cubic_at(&o->cubic[c], &g->ctm, t / 3.0);
-                    m->x0 = MIN(m->x0, p.x), m->x1 = MAX(m->x1, p.x);
-                    m->y0 = MIN(m->y0, p.y), m->y1 = MAX(m->y1, p.y);
-                }
-        }
-    }
-    return all;
-}
-
-double fl_measure_diagonal(const FlLeafMeasure *m)
-{
-    const double w = m->x1 - m->x0, h = m->y1 - m->y0;
-    return w >= 0 && h >= 0 ? sqrt(w * w + h * h) : 0;
 }

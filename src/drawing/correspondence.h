@@ -74,13 +74,7 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlSamples, fl_samples_clear)
 
 typedef struct FlLeafMeasure {
     double x0, y0, x1, y1; // box of its outline, px; empty: x1 < x0
-    uint64_t structure;    // hash of its subpaths' lengths
 } FlLeafMeasure;
-
-/** By leaf; to be freed with g_free(). */
-FlLeafMeasure *fl_measure_leaves(const FlOutlines *outlines);
-
-double fl_measure_diagonal(const FlLeafMeasure *m);
 
 /** Gives round leaves that rest, move or grow the turn of two or more leaves of their group that
  * lie inside them in both frames, if these agree to half a pixel. */

@@ -6,10 +6,9 @@
 static GHashTable *single_trees(const FlSurvey *survey)
 {
     GHashTable *trees = g_hash_table_new(g_direct_hash, g_direct_equal);
-    for (int t = 0; t < survey->n_frames; t++)
-        FL_EACH (const FlSurveyPart, s, survey->frame[t].parts)
-            if (s->unit == 0)
-                g_hash_table_add(trees, GINT_TO_POINTER(s->tree));
+    FL_EACH_PART (survey, t, s)
+        if (s->unit == 0)
+            g_hash_table_add(trees, GINT_TO_POINTER(s->tree));
     return trees;
 }
 

@@ -179,17 +179,17 @@ GArray *fl_leaf_tracks_find(const FlSurvey *survey, const int *label_of)
     g_array_set_clear_func(f.tracks, track_clear);
     for (int t = 0; t < survey->n_frames; t++) {
         GArray *parts = survey->frame[t].parts;
-        for (guint i = 0; i < parts->len; i++)
-            g_array_index(parts, FlSurveyPart, i).nth = -1;
+        FL_EACH (FlSurveyPart, s, parts)
+            s->nth = -1;
         pair_exactly(&f, t);
         for (int k = 0; k < (int)G_N_ELEMENTS(alike); k++) {
             const int left = count_unpaired(parts);
             if (left > 0 && left < TOO_MANY)
                 pair_alike(&f, t, alike[k]);
         }
-        for (guint i = 0; i < parts->len; i++)
-            if (g_array_index(parts, FlSurveyPart, i).nth < 0)
-                new_track(&f, t, &g_array_index(parts, FlSurveyPart, i));
+        FL_EACH (FlSurveyPart, s, parts)
+            if (s->nth < 0)
+                new_track(&f, t, s);
     }
     return f.tracks;
 }

@@ -1,7 +1,8 @@
 /* Frames that a film goes on without, since their drawings cannot be read or drawn. */
 #include "drawing/drawing_data.h"
 
-int fl_sequence_instead(GError *const *failed, int n, int t)
+/** With hold, the frame whose file frame t gets: itself, if it is good. */
+static int instead_of(GError *const *failed, int n, int t)
 {
     int instead = t;
     while (instead >= 0 && failed[instead])
@@ -23,7 +24,7 @@ void fl_sequence_leave_out(FlSequence *s, FlMissing missing, GError *const *fail
                             "left out (‘missing’): %s", failed[t]->message);
             s->n_left_out++;
         }
-        const int from = missing == FL_MISSING_HOLD ? fl_sequence_instead(failed, n, t) : t;
+        const int from = missing == FL_MISSING_HOLD ? instead_of(failed, n, t) : t;
         if (failed[from])
             continue;
         FlSequenceFrame *kept = &s->frame[s->n++];
@@ -53,7 +54,7 @@ static void leave_out(FlDrawing *drawing, FlMissing missing, GError *const *fail
         if (failed[t])
             fl_drawing_frame_clear(&drawing->frame[t]);
     for (int t = 0; t < n; t++) {
-        const int from = missing == FL_MISSING_HOLD ? fl_sequence_instead(failed, n, t) : t;
+        const int from = missing == FL_MISSING_HOLD ? instead_of(failed, n, t) : t;
         if (from != t)
             drawing->frame[kept++] = copy_of(drawing, &drawing->frame[from]);
         else if (!failed[t])

@@ -252,13 +252,12 @@ static void find_class_words(FlDrawing *drawing, const FlSurvey *survey)
 {
     g_autofree int *n_parts = g_new0(int, drawing->regions->len + 1);
     g_autoptr(GHashTable) wearers = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
-    for (int t = 0; t < survey->n_frames; t++)
-        FL_EACH (const FlSurveyPart, s, survey->frame[t].parts) {
-            if (s->region >= 0)
-                n_parts[s->region]++;
-            if (s->classes)
-                note_classes(s, fl_strings_get(&survey->strings, s->classes), wearers);
-        }
+    FL_EACH_PART (survey, t, s) {
+        if (s->region >= 0)
+            n_parts[s->region]++;
+        if (s->classes)
+            note_classes(s, fl_strings_get(&survey->strings, s->classes), wearers);
+    }
     GHashTableIter at;
     gpointer word, found;
     g_hash_table_iter_init(&at, wearers);
@@ -417,12 +416,9 @@ static void merge_regions(FlSurvey *survey, GArray *groups, const FlRule *rules)
             g_array_index(groups, FlRegionIdentity, kept++) =
                 g_array_index(groups, FlRegionIdentity, r);
     }
-    for (int t = 0; t < survey->n_frames && kept < groups->len; t++)
-        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
-            int *region = &g_array_index(survey->frame[t].parts, FlSurveyPart, i).region;
-            if (*region >= 0)
-                *region = number[end[*region]];
-        }
+    FL_EACH_PART (survey, t, s)
+        if (s->region >= 0)
+            s->region = number[end[s->region]];
     g_array_set_size(groups, kept);
 }
 

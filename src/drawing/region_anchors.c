@@ -276,10 +276,9 @@ static void choose_limbs(Leaf *leaf, int n, double least)
 
 static void count_leaves(Follower *f, const FlSurvey *survey, int n_leaves)
 {
-    for (int t = 0; t < survey->n_frames; t++)
-        FL_EACH (const FlSurveyPart, part, survey->frame[t].parts)
-            if (part->region >= 0)
-                count_leaf(f, t, part);
+    FL_EACH_PART (survey, t, part)
+        if (part->region >= 0)
+            count_leaf(f, t, part);
     for (int k = 0; k < n_leaves; k++)
         f->leaf[k].part = NULL;
     const double side = LIMB_PX * (double)MAX(f->page[0], f->page[1]);
@@ -399,19 +398,18 @@ static void follow(Follower *f, int t, const GArray *parts, FlAnchor *anchor, GA
         begin(&f->region[r], &anchor[r]);
         move(&anchor[r], &f->region[r].fit);
     }
-    for (guint i = 0; i < parts->len; i++)
-        if (g_array_index(parts, FlSurveyPart, i).region >= 0)
-            add_limb(f, &g_array_index(parts, FlSurveyPart, i), anchor, limbs);
+    FL_EACH (const FlSurveyPart, part, parts)
+        if (part->region >= 0)
+            add_limb(f, part, anchor, limbs);
 }
 
 /* Numbers the leaves of all regions. Returns: how many there are. */
 static int number_leaves(const FlSurvey *survey, int n_regions, Region *region)
 {
     g_autofree int *n = g_new0(int, n_regions + 1);
-    for (int t = 0; t < survey->n_frames; t++)
-        FL_EACH (const FlSurveyPart, part, survey->frame[t].parts)
-            if (part->region >= 0)
-                n[part->region] = MAX(n[part->region], part->nth + 1);
+    FL_EACH_PART (survey, t, part)
+        if (part->region >= 0)
+            n[part->region] = MAX(n[part->region], part->nth + 1);
     int all = 0;
     for (int r = 0; r < n_regions; r++) {
         region[r].first = all;

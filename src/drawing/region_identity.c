@@ -51,12 +51,11 @@ static GHashTable *find_near_paints(const FlSurvey *survey)
 {
     g_autoptr(GArray) firsts = g_array_new(FALSE, FALSE, sizeof(FlSurveyPart));
     GHashTable *joined = g_hash_table_new(NULL, NULL);
-    for (int t = 0; t < survey->n_frames; t++)
-        FL_EACH (const FlSurveyPart, s, survey->frame[t].parts) {
-            gpointer key = GINT_TO_POINTER(s->paint);
-            if (s->kind == FL_PAINT_FLAT && !g_hash_table_contains(joined, key))
-                g_hash_table_insert(joined, key, GINT_TO_POINTER(first_like(firsts, s)));
-        }
+    FL_EACH_PART (survey, t, s) {
+        gpointer key = GINT_TO_POINTER(s->paint);
+        if (s->kind == FL_PAINT_FLAT && !g_hash_table_contains(joined, key))
+            g_hash_table_insert(joined, key, GINT_TO_POINTER(first_like(firsts, s)));
+    }
     return joined;
 }
 
@@ -71,9 +70,8 @@ static void join_paint(GHashTable *joined, int *paint)
 static void join_near_paints(Work *w)
 {
     g_autoptr(GHashTable) joined = find_near_paints(w->survey);
-    for (int t = 0; t < w->survey->n_frames; t++)
-        for (guint i = 0; i < w->survey->frame[t].parts->len; i++)
-            join_paint(joined, &g_array_index(w->survey->frame[t].parts, FlSurveyPart, i).paint);
+    FL_EACH_PART (w->survey, t, s)
+        join_paint(joined, &s->paint);
     FL_EACH (FlTrack, track, w->tracks) {
         track->varies = false;
         for (guint i = 1; i < track->paints->len; i += 2) {
@@ -89,10 +87,9 @@ static bool is_line_art(const FlSurvey *survey)
 {
     double strokes = 0, fills = 0;
     const double page = (double)survey->width * survey->height;
-    for (int t = 0; t < survey->n_frames; t++)
-        FL_EACH (const FlSurveyPart, s, survey->frame[t].parts)
-            if (s->area_px < 0.95 * page)
-                *(s->stroke ? &strokes : &fills) += s->area_px;
+    FL_EACH_PART (survey, t, s)
+        if (s->area_px < 0.95 * page)
+            *(s->stroke ? &strokes : &fills) += s->area_px;
     return strokes > LINE_ART * (strokes + fills);
 }
 
@@ -139,12 +136,11 @@ static void find_hairs_and_limbs(Work *w)
 {
     const FlSurvey *survey = w->survey;
     const double hair = HAIRLINE * MAX(survey->page.width, survey->page.height);
-    for (int t = 0; t < survey->n_frames; t++)
-        FL_EACH (const FlSurveyPart, s, survey->frame[t].parts) {
-            FlTrack *track = track_at(w, s->nth);
-            track->is_hair &= s->width > 0 && (double)s->width < hair;
-            track->is_limb |= s->thick;
-        }
+    FL_EACH_PART (survey, t, s) {
+        FlTrack *track = track_at(w, s->nth);
+        track->is_hair &= s->width > 0 && (double)s->width < hair;
+        track->is_limb |= s->thick;
+    }
 }
 
 /**
@@ -269,15 +265,14 @@ static void number_tracks(const Work *w, guint n_regions)
     g_autofree int *count = g_new0(int, n_regions + 1);
     g_autofree int *nth = g_new(int, w->tracks->len + 1);
     memset(nth, -1, w->tracks->len * sizeof *nth);
-    for (int t = 0; t < w->survey->n_frames; t++)
-        FL_EACH (FlSurveyPart, s, w->survey->frame[t].parts) {
-            int *number = &nth[s->nth];
-            if (s->region < 0)
-                continue;
-            if (*number < 0)
-                *number = count[s->region]++;
-            s->nth = *number;
-        }
+    FL_EACH_PART (w->survey, t, s) {
+        int *number = &nth[s->nth];
+        if (s->region < 0)
+            continue;
+        if (*number < 0)
+            *number = count[s->region]++;
+        s->nth = *number;
+    }
 }
 
 static GArray *gather(Work *w)
@@ -287,25 +282,24 @@ static GArray *gather(Work *w)
     g_autoptr(GHashTable) numbers = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     g_autoptr(GHashTable) areas =
         g_hash_table_new_full(g_int64_hash, g_int64_equal, g_free, g_free);
-    for (int t = 0; t < w->survey->n_frames; t++)
-        FL_EACH (FlSurveyPart, s, w->survey->frame[t].parts) {
-            const int rule = track_at(w, s->nth)->rule;
-            if (s->stroke && w->options->strokes == FL_STROKES_DROP && rule < 0)
-                continue;
-            g_autofree char *key = key_of(w, s);
-            gpointer number = NULL;
-            if (!g_hash_table_lookup_extended(numbers, key, NULL, &number)) {
-                const FlRegionIdentity group = {.rule = rule, .stroke = true};
-                const Sum sum = {0};
-                number = GINT_TO_POINTER(groups->len);
-                g_hash_table_insert(numbers, g_steal_pointer(&key), number);
-                g_array_append_val(groups, group);
-                g_array_append_val(sums, sum);
-            }
-            s->region = GPOINTER_TO_INT(number);
-            add_up(w, s, &g_array_index(groups, FlRegionIdentity, s->region),
-                   &g_array_index(sums, Sum, s->region), areas);
+    FL_EACH_PART (w->survey, t, s) {
+        const int rule = track_at(w, s->nth)->rule;
+        if (s->stroke && w->options->strokes == FL_STROKES_DROP && rule < 0)
+            continue;
+        g_autofree char *key = key_of(w, s);
+        gpointer number = NULL;
+        if (!g_hash_table_lookup_extended(numbers, key, NULL, &number)) {
+            const FlRegionIdentity group = {.rule = rule, .stroke = true};
+            const Sum sum = {0};
+            number = GINT_TO_POINTER(groups->len);
+            g_hash_table_insert(numbers, g_steal_pointer(&key), number);
+            g_array_append_val(groups, group);
+            g_array_append_val(sums, sum);
         }
+        s->region = GPOINTER_TO_INT(number);
+        add_up(w, s, &g_array_index(groups, FlRegionIdentity, s->region),
+               &g_array_index(sums, Sum, s->region), areas);
+    }
     for (guint r = 0; r < groups->len; r++) {
         const Sum *sum = &g_array_index(sums, Sum, r);
         g_array_index(groups, FlRegionIdentity, r).shade =

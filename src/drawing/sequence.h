@@ -65,9 +65,6 @@ char **fl_paths_of(const char *const *files);
 void fl_sequence_leave_out(FlSequence *sequence, FlMissing missing, GError *const *failed,
                            FlWarnings *warnings);
 
-/** With hold, the frame whose file frame t gets: itself, if it is good. */
-int fl_sequence_instead(GError *const *failed, int n, int t);
-
 /** Begins a request about a frame, read as `svg` says; it borrows from the sequence. */
 FlRequest fl_sequence_request(const FlSequence *sequence, int t, FlVerb verb, FlSvgOptions svg);
 

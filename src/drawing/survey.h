@@ -18,6 +18,11 @@ typedef struct FlSurvey {
     GError **failed; // by frame: why it cannot be read; NULL: it can, or was not tried
 } FlSurvey;
 
+/** Visits the parts of all frames; `break` goes on with the next frame. */
+#define FL_EACH_PART(survey, t, part)                                                              \
+    for (int t = 0; t < (survey)->n_frames; t++)                                                   \
+        FL_EACH (FlSurveyPart, part, (survey)->frame[t].parts)
+
 /**
  * Reads every frame. warnings may be NULL. Returns: false with the error of the first frame that
  * cannot be read, of which `failed` has a copy, or with another error.

@@ -185,16 +185,16 @@ static GArray *match(Cascade *c, const xmlNode *node)
     node = node->_private ? node->_private : node;
     if (c->sheet->rules->len == 0)
         return matched;
-    g_autoptr(xmlChar) id = fl_attribute(node, "id");
-    g_autoptr(xmlChar) class = fl_attribute(node, "class");
-    g_auto(GStrv) word = fl_css_split(class ? (const char *)class : "", ' ');
+    const char *id = fl_attribute(node, "id");
+    const char *class = fl_attribute(node, "class");
+    g_auto(GStrv) word = fl_css_split(class ? class : "", ' ');
     add_matches(c, node, "", "*", matched);
     add_matches(c, node, "", (const char *)node->name, matched);
     for (int i = 0; word[i]; i++)
         if (!g_strv_contains((const char *const *)word + i + 1, word[i]))
             add_matches(c, node, ".", word[i], matched);
     if (id)
-        add_matches(c, node, "#", (const char *)id, matched);
+        add_matches(c, node, "#", id, matched);
     return matched;
 }
 
@@ -363,9 +363,8 @@ static void set_font_size(Style *style, const char *text, bool root)
 typedef struct Animated {
     Cascade *c;
     const xmlNode *node;
-    GArray *values;       // Value
-    GPtrArray *owned;     // the texts of animated values
-    GPtrArray *attribute; // xmlChar, of values that only attributes have
+    GArray *values;   // Value
+    GPtrArray *owned; // the texts of animated values
 } Animated;
 
 static Value *find_value(GArray *values, const char *name)
@@ -381,11 +380,9 @@ static const char *underlying_value(const void *data, const char *name)
     const Animated *a = data;
     const Value *value = find_value(a->values, name);
     const FlCssProperty *property = fl_css_property(name);
-    xmlChar *attribute = value ? NULL : fl_attribute(a->node, name);
-    if (attribute)
-        g_ptr_array_add(a->attribute, attribute);
+    const char *attribute = value ? NULL : fl_attribute(a->node, name);
     return value                           ? value->text
-           : attribute                     ? (const char *)attribute
+           : attribute                     ? attribute
            : property && property->initial ? property->initial
                                            : "";
 }
@@ -413,8 +410,7 @@ static bool animate(Cascade *c, const xmlNode *node, GArray *values, const Style
                     GPtrArray *owned)
 {
     g_autoptr(FlCssAnimations) animations = NULL;
-    g_autoptr(GPtrArray) attributes = g_ptr_array_new_with_free_func(xmlFree);
-    Animated animated = {c, node, values, owned, attributes};
+    Animated animated = {c, node, values, owned};
     FL_EACH (const Value, v, values) {
         if (!v->property || v->property->kind != FL_CSS_ANIMATION)
             continue;
@@ -502,7 +498,7 @@ static void apply(Cascade *c, xmlNode *node, const Value *v, const Style *style,
 
 static void enter_viewport(Style *style, const xmlNode *node)
 {
-    g_autoptr(xmlChar) width = fl_attribute(node, "width"), height = fl_attribute(node, "height");
+    const char *width = fl_attribute(node, "width"), *height = fl_attribute(node, "height");
     double v[4];
     if (fl_view_box(node, v)) {
         style->units.width = v[2], style->units.height = v[3];
@@ -510,9 +506,9 @@ static void enter_viewport(Style *style, const xmlNode *node)
     }
     FlCssUnits *u = &style->units;
     if (width)
-        fl_css_number((const char *)width, u, u->width, &u->width);
+        fl_css_number(width, u, u->width, &u->width);
     if (height)
-        fl_css_number((const char *)height, u, u->height, &u->height);
+        fl_css_number(height, u, u->height, &u->height);
 }
 
 /** The value that an element sets, to be freed; NULL: it inherits its own. */
@@ -528,8 +524,8 @@ static char *own_value(Cascade *c, const xmlNode *node, GArray *values, const ch
 
 static void visit(Cascade *c, xmlNode *node, const Style *around)
 {
-    g_autoptr(xmlChar) written = fl_attribute(node, "style");
-    g_autoptr(GArray) own = fl_css_declarations(written ? (const char *)written : "");
+    const char *written = fl_attribute(node, "style");
+    g_autoptr(GArray) own = fl_css_declarations(written ? written : "");
     g_autoptr(GArray) values = declared_values(c, node, around->shown, own);
     g_autoptr(GHashTable) effects = NULL;
     g_autoptr(GPtrArray) owned = g_ptr_array_new_with_free_func(g_free);
@@ -595,14 +591,14 @@ static GHashTable *index_rules(const GArray *rules)
 static FlCssUnits page_units(const xmlNode *root)
 {
     Style style = {.units = {300, 150, 16, 16, 300, 150}};
-    g_autoptr(xmlChar) width = fl_attribute(root, "width"), height = fl_attribute(root, "height");
+    const char *width = fl_attribute(root, "width"), *height = fl_attribute(root, "height");
     FlCssUnits *u = &style.units;
     enter_viewport(&style, root);
     u->page_width = u->width, u->page_height = u->height;
-    if (width && !strchr((char *)width, '%'))
-        fl_css_number((char *)width, u, 0, &u->page_width);
-    if (height && !strchr((char *)height, '%'))
-        fl_css_number((char *)height, u, 0, &u->page_height);
+    if (width && !strchr(width, '%'))
+        fl_css_number(width, u, 0, &u->page_width);
+    if (height && !strchr(height, '%'))
+        fl_css_number(height, u, 0, &u->page_height);
     return style.units;
 }
 

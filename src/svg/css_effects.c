@@ -21,8 +21,8 @@ static const char *value_of(GHashTable *effects, const char *name)
 static char *value_or_attribute(GHashTable *effects, const xmlNode *node, const char *name)
 {
     const char *value = get(effects, name);
-    g_autoptr(xmlChar) attribute = value ? NULL : fl_attribute(node, name);
-    return value && *value ? g_strdup(value) : attribute ? g_strdup((char *)attribute) : NULL;
+    const char *attribute = value ? NULL : fl_attribute(node, name);
+    return value && *value ? g_strdup(value) : attribute ? g_strdup(attribute) : NULL;
 }
 
 static void set_matrix(xmlNode *node, const FlAffine *m)
@@ -151,7 +151,7 @@ static const char *apply_transform(GHashTable *effects, xmlNode *node, const FlC
 {
     const char *css = get(effects, "transform");
     g_autofree char *origin_text = value_or_attribute(effects, node, "transform-origin");
-    g_autoptr(xmlChar) attribute = css ? NULL : fl_attribute(node, "transform");
+    const char *attribute = css ? NULL : fl_attribute(node, "transform");
     const char *translate = value_of(effects, "translate"), *rotate = value_of(effects, "rotate");
     const char *scale = value_of(effects, "scale");
     const bool moves = css || translate || rotate || scale || value_of(effects, "offset-path") ||
@@ -168,7 +168,7 @@ static const char *apply_transform(GHashTable *effects, xmlNode *node, const FlC
     const bool bad_origin = origin_text && !fl_css_position(origin_text, &in_box, box, &origin);
     FlAffine all = {1, 0, 0, 1, origin.x, origin.y}, own = FL_AFFINE_NONE;
     const FlAffine back = {1, 0, 0, 1, -origin.x, -origin.y};
-    if (attribute && !fl_affine_parse((const char *)attribute, &own))
+    if (attribute && !fl_affine_parse(attribute, &own))
         return NULL; // librsvg decides
     if (css && *css && !fl_affine_parse_css(css, &in_box, &own, &flat))
         return "transform";
@@ -198,14 +198,13 @@ static void add_clip(xmlNode *node, const FlOutlines *outlines, bool evenodd, in
 {
     g_autofree char *d = fl_css_outline_text(outlines, &FL_AFFINE_NONE);
     g_autofree char *id = g_strdup_printf("fl-clip-%d", (*n_clips)++);
-    g_autofree char *declaration = g_strdup_printf("clip-path:url(#%s)", id);
     xmlNode *clip = add_child(xmlDocGetRootElement(node->doc), "clipPath");
     xmlNode *path = add_child(clip, "path");
     fl_set_attribute(clip, "id", id);
     fl_set_attribute(path, "d", d);
     if (evenodd)
         fl_set_attribute(path, "clip-rule", "evenodd");
-    fl_declare(node, declaration);
+    fl_declare(node, "clip-path:url(#%s)", id);
 }
 
 static const char *apply_clip(GHashTable *effects, xmlNode *node, const FlCssUnits *units,
@@ -214,10 +213,9 @@ static const char *apply_clip(GHashTable *effects, xmlNode *node, const FlCssUni
     const char *value = get(effects, "clip-path");
     if (!value)
         return NULL;
-    g_autofree char *as_it_is = g_strconcat("clip-path:", *value ? value : "none", NULL);
     if (!*value || strcmp(value, "none") == 0 || strcmp(value, "inherit") == 0 ||
         g_ascii_strncasecmp(value, "url(", 4) == 0) {
-        fl_declare(node, as_it_is);
+        fl_declare(node, "clip-path:%s", *value ? value : "none");
         return NULL;
     }
     g_auto(GStrv) part = fl_css_split(value, ' ');
@@ -252,8 +250,7 @@ static const char *apply_mask(GHashTable *effects, xmlNode *node)
     if (!value)
         return NULL;
     g_auto(GStrv) part = fl_css_split(value, ' ');
-    g_autofree char *declaration = g_strconcat("mask:", part[0] ? part[0] : "none", NULL);
-    fl_declare(node, declaration);
+    fl_declare(node, "mask:%s", part[0] ? part[0] : "none");
     for (int i = 1; part[0] && part[i]; i++)
         if (!fl_css_has_word("luminance match-source no-clip add", part[i]))
             return "mask";
@@ -333,8 +330,7 @@ static void apply_filter(GHashTable *effects, xmlNode *node, const FlCssUnits *u
     if (!changed)
         return;
     g_autofree char *list = g_strjoinv(" ", part);
-    g_autofree char *declaration = g_strconcat("filter:", *list ? list : "none", NULL);
-    fl_declare(node, declaration);
+    fl_declare(node, "filter:%s", *list ? list : "none");
 }
 
 /** The background of the whole page becomes a rectangle below everything. */
@@ -410,9 +406,8 @@ static void scale_stroke(xmlNode *node, const char *const *names, double factor,
             value = g_strdup("1");
         g_autofree char *text =
             value && strcmp(value, "none") != 0 ? scaled(value, factor, units) : NULL;
-        g_autofree char *declaration = text ? g_strdup_printf("%s:%s", names[i], text) : NULL;
-        if (declaration)
-            fl_declare(node, declaration);
+        if (text)
+            fl_declare(node, "%s:%s", names[i], text);
     }
 }
 
@@ -420,9 +415,9 @@ static void scale_stroke(xmlNode *node, const char *const *names, double factor,
 static void apply_path_length(xmlNode *node, const FlCssUnits *units)
 {
     static const char *const dashes[] = {"stroke-dasharray", "stroke-dashoffset", NULL};
-    g_autoptr(xmlChar) text = fl_attribute(node, "pathLength");
+    const char *text = fl_attribute(node, "pathLength");
     double wanted = 0;
-    if (!text || !fl_css_number((const char *)text, units, 0, &wanted) || !(wanted > 0))
+    if (!text || !fl_css_number(text, units, 0, &wanted) || !(wanted > 0))
         return;
     g_autoptr(FlOutlines) outlines = fl_css_outlines(node, units);
     const double length = fl_css_outline_length(outlines);
@@ -439,9 +434,8 @@ static void apply_light(xmlNode *node)
     g_autofree char *space = fl_inherited_property(node, "color-interpolation-filters");
     g_autofree char *colour = fl_property(node, "lighting-color");
     g_autofree char *linear = colour ? fl_css_colour_in_linear_light(colour) : NULL;
-    g_autofree char *declaration = linear ? g_strconcat("lighting-color:", linear, NULL) : NULL;
-    if (declaration && (!space || strcmp(space, "sRGB") != 0))
-        fl_declare(node, declaration);
+    if (linear && g_strcmp0(space, "sRGB") != 0)
+        fl_declare(node, "lighting-color:%s", linear);
 }
 
 const char *fl_css_effects_apply(GHashTable *effects, xmlNode *node, const FlCssUnits *units,
@@ -492,10 +486,10 @@ static void keep_stroke(xmlNode *node, const FlAffine *around, const FlAffine *a
 static void visit_strokes(xmlNode *node, const FlAffine *around, const FlCssUnits *units)
 {
     FlAffine own = FL_AFFINE_NONE;
-    g_autoptr(xmlChar) transform = fl_attribute(node, "transform");
+    const char *transform = fl_attribute(node, "transform");
     g_autofree char *vector = fl_property(node, "vector-effect");
     if (transform)
-        fl_affine_parse((const char *)transform, &own);
+        fl_affine_parse(transform, &own);
     const FlAffine all = fl_affine_multiply(around, &own);
     if (vector && strcmp(vector, "non-scaling-stroke") == 0)
         keep_stroke(node, around, &all, units);

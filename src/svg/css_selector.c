@@ -52,10 +52,8 @@ static void compound_clear(void *data)
     g_array_unref(((Compound *)data)->simple);
 }
 
-void fl_selector_free(FlSelector *selector)
+static void selector_free(FlSelector *selector)
 {
-    if (!selector)
-        return;
     g_array_unref(selector->compound);
     g_free(selector->key);
     g_free(selector);
@@ -348,7 +346,7 @@ static FlSelector *parse_one(const char *text, int depth)
         good = good && (combinator || !*s);
     }
     if (!good || (combinator && combinator != ' ')) {
-        fl_selector_free(selector);
+        selector_free(selector);
         return NULL;
     }
     selector->key =
@@ -359,7 +357,7 @@ static FlSelector *parse_one(const char *text, int depth)
 /** forgiving: what is unknown is left out instead of spoiling the list. */
 static GPtrArray *parse_list(const char *text, bool forgiving, int depth)
 {
-    g_autoptr(GPtrArray) list = g_ptr_array_new_with_free_func((GDestroyNotify)fl_selector_free);
+    g_autoptr(GPtrArray) list = g_ptr_array_new_with_free_func((GDestroyNotify)selector_free);
     g_auto(GStrv) parts = fl_css_split(text, ',');
     if (depth > MOST_NESTED)
         return NULL;
@@ -466,22 +464,21 @@ static bool speaks(const Simple *simple, const xmlNode *node)
 
 static bool matches_attribute(const Simple *simple, const xmlNode *node)
 {
-    g_autoptr(xmlChar) own = fl_attribute(node, simple->name);
+    const char *own = fl_attribute(node, simple->name);
     g_autofree char *foreign = own ? NULL : fl_foreign_attribute(node, simple->name);
-    const char *value = own ? (const char *)own : foreign;
+    const char *value = own ? own : foreign;
     return value && (!simple->comparison || matches_value(simple, value));
 }
 
 static bool has_id(const xmlNode *node, const char *id)
 {
-    g_autoptr(xmlChar) own = fl_attribute(node, "id");
-    return own && strcmp((const char *)own, id) == 0;
+    return g_strcmp0(fl_attribute(node, "id"), id) == 0;
 }
 
 static bool has_class(const xmlNode *node, const char *class)
 {
-    g_autoptr(xmlChar) own = fl_attribute(node, "class");
-    return own && fl_css_has_word((const char *)own, class);
+    const char *own = fl_attribute(node, "class");
+    return own && fl_css_has_word(own, class);
 }
 
 static bool is_link(const xmlNode *node)

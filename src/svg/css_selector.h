@@ -19,8 +19,6 @@ typedef struct FlSelector {
  */
 GPtrArray *fl_selectors_parse(const char *text);
 
-void fl_selector_free(FlSelector *selector); // NULL is fine
-
 /** The work of matching, over a whole document. */
 typedef struct FlSelectorWork {
     const xmlNode *top;     // an element that has nothing around or beside it; or NULL

@@ -439,10 +439,10 @@ static void read_rules(Reader *reader, const char *css, const Place *place)
 static void take_element(Reader *reader, xmlNode *node, const Place *place)
 {
     g_autoptr(xmlChar) css = xmlNodeGetContent(node);
-    g_autoptr(xmlChar) media = fl_attribute(node, "media");
-    g_autoptr(xmlChar) type = fl_attribute(node, "type");
-    const bool is_css = !type || !*type || g_ascii_strcasecmp((char *)type, "text/css") == 0;
-    if (css && is_css && fl_css_media_matches(media ? (const char *)media : "", &reader->page)) {
+    const char *media = fl_attribute(node, "media");
+    const char *type = fl_attribute(node, "type");
+    const bool is_css = !type || !*type || g_ascii_strcasecmp(type, "text/css") == 0;
+    if (css && is_css && fl_css_media_matches(media ? media : "", &reader->page)) {
         g_autofree char *bare = fl_css_without_comments((const char *)css);
         read_rules(reader, bare, place);
     }
@@ -452,11 +452,11 @@ static void take_element(Reader *reader, xmlNode *node, const Place *place)
 /** Reads the sheet of HTML's <link rel="stylesheet" href="…">. */
 static void take_link(Reader *reader, const xmlNode *node, const Place *place)
 {
-    g_autoptr(xmlChar) kind = fl_attribute(node, "rel"), href = fl_attribute(node, "href");
-    g_autoptr(xmlChar) media = fl_attribute(node, "media");
-    if (href && xmlStrEqual(kind, (const xmlChar *)"stylesheet") &&
-        fl_css_media_matches(media ? (const char *)media : "", &reader->page))
-        read_file(reader, (const char *)href, place);
+    const char *kind = fl_attribute(node, "rel"), *href = fl_attribute(node, "href");
+    const char *media = fl_attribute(node, "media");
+    if (href && g_strcmp0(kind, "stylesheet") == 0 &&
+        fl_css_media_matches(media ? media : "", &reader->page))
+        read_file(reader, href, place);
 }
 
 static void take_elements(Reader *reader, xmlNode *node, const Place *place)

@@ -42,49 +42,53 @@ bool fl_is_animation(const xmlNode *node)
     return fl_is_one_of(node, "animate animateTransform animateMotion animateColor set");
 }
 
-xmlChar *fl_attribute(const xmlNode *node, const char *name)
+/** The text of an attribute; references to entities in it become text the first time. */
+static const char *text_of(xmlAttr *a)
 {
-    return xmlGetNoNsProp(node, (const xmlChar *)name);
+    if (a->children && (a->children->next || a->children->type != XML_TEXT_NODE)) {
+        g_autoptr(xmlChar) text = xmlNodeListGetString(a->doc, a->children, 1);
+        xmlSetNsProp(a->parent, a->ns, a->name, text);
+    }
+    return a->children && a->children->content ? (const char *)a->children->content : "";
 }
 
-/** The text of an attribute, to be freed with g_free(). */
-static char *text_of(const xmlAttr *a)
+const char *fl_attribute(const xmlNode *node, const char *name)
 {
-    const xmlNode *only = a->children && !a->children->next ? a->children : NULL;
-    if (only && only->type == XML_TEXT_NODE) // as nearly all are
-        return g_strdup((const char *)only->content);
-    g_autoptr(xmlChar) text = xmlNodeListGetString(a->doc, a->children, 1);
-    return g_strdup(text ? (const char *)text : "");
+    xmlAttr *a = xmlHasNsProp((xmlNode *)node, (const xmlChar *)name, NULL);
+    if (a && a->type == XML_ATTRIBUTE_DECL) // a default of the document's own types
+        return (const char *)((xmlAttribute *)a)->defaultValue;
+    return a ? text_of(a) : NULL;
 }
 
 char *fl_foreign_attribute(const xmlNode *node, const char *name)
 {
-    for (const xmlAttr *a = node->properties; a; a = a->next) {
+    for (xmlAttr *a = node->properties; a; a = a->next) {
         const char *colon = strchr((const char *)a->name, ':');
         if ((!a->ns && !colon) || strcmp(colon ? colon + 1 : (const char *)a->name, name) != 0)
             continue;
-        return g_strstrip(text_of(a));
+        return g_strstrip(g_strdup(text_of(a)));
     }
     return NULL;
 }
 
 char *fl_href(const xmlNode *node)
 {
-    g_autoptr(xmlChar) plain = fl_attribute(node, "href");
-    return plain ? g_strdup((const char *)plain) : fl_foreign_attribute(node, "href");
+    const char *plain = fl_attribute(node, "href");
+    return plain ? g_strdup(plain) : fl_foreign_attribute(node, "href");
 }
 
 char *fl_property(const xmlNode *node, const char *name)
 {
-    const xmlAttr *own = NULL, *style = NULL; // looked for at once, since most elements have none
-    for (const xmlAttr *a = node->properties; a; a = a->next)
+    xmlAttr *own = NULL, *style = NULL; // looked for at once, since most elements have none
+    for (xmlAttr *a = node->properties; a; a = a->next)
         if (!a->ns && strcmp((const char *)a->name, name) == 0)
             own = a;
         else if (!a->ns && strcmp((const char *)a->name, "style") == 0)
             style = a;
     if (!own && !style)
         return NULL;
-    g_autofree char *declared = style ? text_of(style) : NULL, *value = NULL;
+    const char *declared = style ? text_of(style) : NULL;
+    g_autofree char *value = NULL;
     if (declared && strstr(declared, name)) {
         g_auto(GStrv) parts = g_strsplit(declared, ";", -1);
         for (int i = 0; parts[i]; i++) {
@@ -98,7 +102,7 @@ char *fl_property(const xmlNode *node, const char *name)
             }
         }
     }
-    return value ? g_steal_pointer(&value) : own ? g_strstrip(text_of(own)) : NULL;
+    return value ? g_steal_pointer(&value) : own ? g_strstrip(g_strdup(text_of(own))) : NULL;
 }
 
 char *fl_inherited_property(const xmlNode *node, const char *name)
@@ -127,13 +131,16 @@ xmlNode *fl_referred_by(const char *value, const char *kinds, GHashTable *ids)
     return found && fl_is_one_of(found, kinds) ? found : NULL;
 }
 
-bool fl_declare(xmlNode *node, const char *declarations)
+bool fl_declare(xmlNode *node, const char *format, ...)
 {
-    g_autoptr(xmlChar) style = fl_attribute(node, "style");
-    if (style && g_str_has_suffix((const char *)style, declarations))
+    va_list arguments;
+    va_start(arguments, format);
+    g_autofree char *declarations = g_strdup_vprintf(format, arguments);
+    va_end(arguments);
+    const char *style = fl_attribute(node, "style");
+    if (style && g_str_has_suffix(style, declarations))
         return false;
-    g_autofree char *all =
-        g_strconcat(style ? (const char *)style : "", style ? ";" : "", declarations, NULL);
+    g_autofree char *all = g_strconcat(style ? style : "", style ? ";" : "", declarations, NULL);
     fl_set_attribute(node, "style", all);
     return true;
 }
@@ -165,11 +172,10 @@ void fl_set_numbers(xmlNode *node, const char *name, const double *v, int n)
 
 bool fl_view_box(const xmlNode *node, double box[4])
 {
-    g_autoptr(xmlChar) text = fl_attribute(node, "viewBox");
-    const char *s = text ? (const char *)text : "";
+    const char *s = fl_attribute(node, "viewBox");
     double v[4];
     for (int k = 0; k < 4; k++) {
-        s += strspn(s, " \t\r\n\f,");
+        s = s ? s + strspn(s, " \t\r\n\f,") : "";
         if (!fl_number_read(&s, &v[k]))
             return false;
     }
@@ -489,9 +495,9 @@ char *fl_document_text(xmlDoc *doc, size_t *bytes)
 
 static void collect_ids(xmlNode *node, GHashTable *ids)
 {
-    g_autoptr(xmlChar) id = fl_attribute(node, "id");
+    const char *id = fl_attribute(node, "id");
     if (id && !g_hash_table_contains(ids, id))
-        g_hash_table_insert(ids, g_strdup((const char *)id), node);
+        g_hash_table_insert(ids, g_strdup(id), node);
     FL_EACH_ELEMENT (child, node)
         collect_ids(child, ids);
 }

@@ -54,8 +54,8 @@ xmlNode *fl_element_around(const xmlNode *node);
 /** Returns: true if node is a container of elements: <g>, <svg> or <a>. */
 bool fl_is_container(const xmlNode *node);
 
-/** An attribute without a namespace; NULL if absent. To be freed with xmlFree(). */
-xmlChar *fl_attribute(const xmlNode *node, const char *name);
+/** An attribute without a namespace; NULL if absent. It lasts until the attribute is set again. */
+const char *fl_attribute(const xmlNode *node, const char *name);
 
 /** Sets an attribute without a namespace; removes it if the value is NULL or "". */
 void fl_set_attribute(xmlNode *node, const char *name, const char *value);
@@ -101,7 +101,7 @@ xmlNode *fl_referred_by(const char *value, const char *kinds, GHashTable *ids);
  * Adds declarations, such as "fill:none !important", to those of `style=""`. Returns: false if
  * `style=""` already ended with these declarations.
  */
-bool fl_declare(xmlNode *node, const char *declarations);
+bool fl_declare(xmlNode *node, const char *format, ...) G_GNUC_PRINTF(2, 3);
 
 /** Returns: true if a property is set, and not to none or normal. */
 bool fl_is_set(const xmlNode *node, const char *property);

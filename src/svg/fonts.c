@@ -22,7 +22,7 @@ static void add_declarations(Wanted *wanted, const xmlNode *node)
 {
     static const char *const names[] = {"font-family", "font", "style"};
     for (size_t k = 0; k < G_N_ELEMENTS(names); k++) {
-        g_autoptr(xmlChar) value = fl_attribute(node, names[k]);
+        const char *value = fl_attribute(node, names[k]);
         if (value)
             g_string_append_printf(wanted->css, k < 2 ? "%s:%s;" : "%.0s%s;", names[k], value);
     }

@@ -41,8 +41,8 @@ static FlOutlineKind draw_shape(const FlInheritance *inheritance, const xmlNode 
 #undef LENGTH
     const bool polygon = fl_is(node, "polygon");
     if (polygon || fl_is(node, "polyline")) {
-        g_autoptr(xmlChar) points = fl_attribute(node, "points");
-        *broken |= !fl_pen_points(pen, points ? (const char *)points : "", polygon);
+        const char *points = fl_attribute(node, "points");
+        *broken |= !fl_pen_points(pen, points ? points : "", polygon);
         return FL_OUTLINE_POLY;
     }
     return FL_OUTLINE_NONE;
@@ -54,9 +54,9 @@ static FlOutlineKind draw_leaf(const FlInheritance *inheritance, const xmlNode *
     *pen = (FlPen){.subpath = pen->subpath, .cubic = pen->cubic};
     if (!fl_is(node, "path"))
         return draw_shape(inheritance, node, s, pen, broken);
-    g_autoptr(xmlChar) d = fl_attribute(node, "d");
+    const char *d = fl_attribute(node, "d");
     if (d)
-        fl_path_data_walk((const char *)d, fl_pen_step, pen);
+        fl_path_data_walk(d, fl_pen_step, pen);
     return FL_OUTLINE_PATH;
 }
 

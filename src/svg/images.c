@@ -22,9 +22,9 @@ typedef struct Check {
 
 static void warn(const Check *check, const xmlNode *node, const char *href, const char *text)
 {
-    g_autoptr(xmlChar) id = fl_attribute(node, "id");
-    fl_warnings_add(check->warnings, check->path, check->number, (const char *)id,
-                    "the image “%.60s” %s", href, text);
+    const char *id = fl_attribute(node, "id");
+    fl_warnings_add(check->warnings, check->path, check->number, id, "the image “%.60s” %s", href,
+                    text);
 }
 
 static bool check_pixels(const Check *check, double width, double height, GError **error)
@@ -76,8 +76,8 @@ static double side_of(const xmlNode *node, const char *name)
 
 static bool is_auto(const xmlNode *node, const char *name)
 {
-    g_autoptr(xmlChar) text = fl_attribute(node, name);
-    return !text || xmlStrEqual(text, (const xmlChar *)"auto");
+    const char *text = fl_attribute(node, name);
+    return !text || g_strcmp0(text, "auto") == 0;
 }
 
 /** Computes a missing side of an <image> from the other one. */

@@ -57,7 +57,7 @@ static void enter_viewport(const FlInheritance *inheritance, const xmlNode *node
     bool *broken = &s->broken;
     double box[4] = {0, 0, 0, 0};
     const bool boxed = fl_view_box(node, box);
-    g_autoptr(xmlChar) ratio = fl_attribute(node, "preserveAspectRatio");
+    const char *ratio = fl_attribute(node, "preserveAspectRatio");
     if (outermost) { // the page is its viewport; without a viewBox its size is one
         if (!boxed) {
             box[2] = fl_length_in(inheritance, node, "width", 0, 0, broken);
@@ -76,7 +76,7 @@ static void enter_viewport(const FlInheritance *inheritance, const xmlNode *node
         s->clipped |= !shown;
     }
     if (box[2] > 0 && box[3] > 0) {
-        const FlAffine fit = fit_box(box, s->width, s->height, (const char *)ratio);
+        const FlAffine fit = fit_box(box, s->width, s->height, ratio);
         s->ctm = fl_affine_multiply(&s->ctm, &fit);
         s->width = box[2], s->height = box[3];
     }

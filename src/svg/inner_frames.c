@@ -6,6 +6,50 @@
 #include <math.h>
 #include <string.h>
 
+/* ---- layers ---------------------------------------------------------------------------------- */
+
+static bool is_marked(const xmlNode *node)
+{
+    g_autofree char *mode = fl_foreign_attribute(node, "groupmode");
+    return mode && (strcmp(mode, "layer") == 0 || strcmp(mode, "frame") == 0);
+}
+
+static bool is_static(const xmlNode *node)
+{
+    g_autofree char *label = fl_foreign_attribute(node, "label");
+    g_autofree char *lower = label ? g_ascii_strdown(label, -1) : NULL;
+    return lower && strstr(lower, "(static)");
+}
+
+/** The groups of a parent that are frames, bottom up; to be unref'd. */
+static GPtrArray *frames_in(const xmlNode *parent)
+{
+    GPtrArray *frames = g_ptr_array_new();
+    bool marked = false;
+    for (xmlNode *child = parent->children; child; child = child->next)
+        marked = marked || (fl_is(child, "g") && is_marked(child));
+    for (xmlNode *child = parent->children; child; child = child->next)
+        if (fl_is(child, "g") && (!marked || is_marked(child)) && !is_static(child))
+            g_ptr_array_add(frames, child);
+    return frames;
+}
+
+/** The frames of a document: those of the innermost only group, if that has several. */
+static GPtrArray *frames_of(const xmlDoc *doc)
+{
+    GPtrArray *frames = frames_in(xmlDocGetRootElement(doc));
+    while (frames->len == 1) {
+        GPtrArray *inner = frames_in(frames->pdata[0]);
+        if (inner->len == 0) {
+            g_ptr_array_unref(inner);
+            break;
+        }
+        g_ptr_array_unref(frames);
+        frames = inner;
+    }
+    return frames;
+}
+
 /* ---- pages ----------------------------------------------------------------------------------- */
 
 /** The <inkscape:page> elements of a document, in their order; to be unref'd. */
@@ -26,11 +70,10 @@ static char **fbf_frames(xmlDoc *doc, xmlNode **use)
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
     *use = g_hash_table_lookup(ids, "PROSKENION");
     for (const xmlNode *child = *use ? (*use)->children : NULL; child; child = child->next) {
-        g_autoptr(xmlChar) name =
-            fl_is(child, "animate") ? fl_attribute(child, "attributeName") : NULL;
-        g_autoptr(xmlChar) values = name ? fl_attribute(child, "values") : NULL;
-        if (values && g_str_has_suffix((const char *)name, "href"))
-            return g_strsplit((const char *)values, ";", -1);
+        const char *name = fl_is(child, "animate") ? fl_attribute(child, "attributeName") : NULL;
+        const char *values = name ? fl_attribute(child, "values") : NULL;
+        if (values && g_str_has_suffix(name, "href"))
+            return g_strsplit(values, ";", -1);
     }
     return NULL;
 }
@@ -45,19 +88,18 @@ static int count_pages(xmlDoc *doc)
 
 static double number_of(const xmlNode *node, const char *name)
 {
-    g_autoptr(xmlChar) text = fl_attribute(node, name);
-    return text ? g_ascii_strtod((const char *)text, NULL) : 0;
+    const char *text = fl_attribute(node, name);
+    return text ? g_ascii_strtod(text, NULL) : 0;
 }
 
 /** Scales the size of the document by that of a page to the old page. */
 static void scale_size(xmlNode *root, const char *name, double factor)
 {
-    g_autoptr(xmlChar) text = fl_attribute(root, name);
+    const char *text = fl_attribute(root, name);
     char *unit = NULL;
-    if (!text || strchr((const char *)text, '%'))
+    if (!text || strchr(text, '%'))
         return;
-    g_autofree char *number =
-        fl_css_number_text(factor * g_ascii_strtod((const char *)text, &unit));
+    g_autofree char *number = fl_css_number_text(factor * g_ascii_strtod(text, &unit));
     g_autofree char *size = g_strconcat(number, unit, NULL);
     fl_set_attribute(root, name, size);
 }
@@ -164,18 +206,35 @@ static bool frames_in_time(xmlDoc *doc, const char *path, const FlMoments *momen
     return false;
 }
 
+/** Returns: true if a node says that it moves by itself: SMIL, CSS animations. */
+static bool moves(const xmlNode *node)
+{
+    if (fl_is_animation(node))
+        return true;
+    if (fl_is(node, "style")) {
+        g_autoptr(xmlChar) css = xmlNodeGetContent(node);
+        return css && strstr((const char *)css, "@keyframes");
+    }
+    FL_EACH_ELEMENT (child, node)
+        if (moves(child))
+            return true;
+    return false;
+}
+
 bool fl_inner_frames(xmlDoc *doc, const char *path, FlFramesFrom from, const FlMoments *moments,
                      FlInnerFrames *frames, GError **error)
 {
     const int pages = count_pages(doc);
+    g_autoptr(GPtrArray) layers = NULL;
     *frames = (FlInnerFrames){.from = from, .n = 1};
     if (from <= FL_FRAMES_AUTO)
-        frames->from = pages > 1                    ? FL_FRAMES_PAGES
-                       : fl_document_moves(doc) > 0 ? FL_FRAMES_TIME
-                                                    : FL_FRAMES_FILES;
+        frames->from = pages > 1                          ? FL_FRAMES_PAGES
+                       : moves(xmlDocGetRootElement(doc)) ? FL_FRAMES_TIME
+                                                          : FL_FRAMES_FILES;
     switch (frames->from) {
     case FL_FRAMES_LAYERS:
-        frames->n = fl_layer_frames_count(doc);
+        layers = frames_of(doc);
+        frames->n = (int)layers->len;
         if (frames->n < 2)
             g_set_error(
                 error, FL_ERROR, FL_ERROR_INPUT,
@@ -198,56 +257,6 @@ bool fl_inner_frames(xmlDoc *doc, const char *path, FlFramesFrom from, const FlM
     default:
         return true;
     }
-}
-
-/* ---- layers and pages ------------------------------------------------------------------------ */
-
-static bool is_marked(const xmlNode *node)
-{
-    g_autofree char *mode = fl_foreign_attribute(node, "groupmode");
-    return mode && (strcmp(mode, "layer") == 0 || strcmp(mode, "frame") == 0);
-}
-
-static bool is_static(const xmlNode *node)
-{
-    g_autofree char *label = fl_foreign_attribute(node, "label");
-    g_autofree char *lower = label ? g_ascii_strdown(label, -1) : NULL;
-    return lower && strstr(lower, "(static)");
-}
-
-/** The groups of a parent that are frames, bottom up; to be unref'd. */
-static GPtrArray *frames_in(const xmlNode *parent)
-{
-    GPtrArray *frames = g_ptr_array_new();
-    bool marked = false;
-    for (xmlNode *child = parent->children; child; child = child->next)
-        marked = marked || (fl_is(child, "g") && is_marked(child));
-    for (xmlNode *child = parent->children; child; child = child->next)
-        if (fl_is(child, "g") && (!marked || is_marked(child)) && !is_static(child))
-            g_ptr_array_add(frames, child);
-    return frames;
-}
-
-/** The frames of a document: those of the innermost only group, if that has several. */
-static GPtrArray *frames_of(const xmlDoc *doc)
-{
-    GPtrArray *frames = frames_in(xmlDocGetRootElement(doc));
-    while (frames->len == 1) {
-        GPtrArray *inner = frames_in(frames->pdata[0]);
-        if (inner->len == 0) {
-            g_ptr_array_unref(inner);
-            break;
-        }
-        g_ptr_array_unref(frames);
-        frames = inner;
-    }
-    return frames;
-}
-
-int fl_layer_frames_count(const xmlDoc *doc)
-{
-    g_autoptr(GPtrArray) frames = frames_of(doc);
-    return (int)frames->len;
 }
 
 /** Shows a layer that was hidden when the document was saved. */
@@ -303,26 +312,4 @@ bool fl_layer_frames_select(xmlDoc *doc, int frame, const char *path, GError **e
     for (xmlNode *above = shown->parent; fl_is(above, "g"); above = above->parent)
         show(above);
     return true;
-}
-
-static int moves_at(const xmlNode *node)
-{
-    const long line = MAX(xmlGetLineNo(node), 1);
-    if (fl_is_animation(node))
-        return (int)line;
-    if (fl_is(node, "style")) {
-        g_autoptr(xmlChar) css = xmlNodeGetContent(node);
-        return css && strstr((const char *)css, "@keyframes") ? (int)line : 0;
-    }
-    for (const xmlNode *child = node->children; child; child = child->next) {
-        const int at = child->type == XML_ELEMENT_NODE ? moves_at(child) : 0;
-        if (at > 0)
-            return at;
-    }
-    return 0;
-}
-
-int fl_document_moves(const xmlDoc *doc)
-{
-    return moves_at(xmlDocGetRootElement(doc));
 }

@@ -27,8 +27,11 @@ typedef struct FlInnerFrames {
 /**
  * Finds the frames of a document. AUTO takes pages, then animations, then the document as one.
  *
- * Pages are those of Inkscape and the frames of FBF.SVG. The length in time is that of the longest
- * animation that ends, else that after which all loops are back at their beginning.
+ * Layers are those at the top of the document or of its only group: groups that Inkscape marks as
+ * layers or Freestyle as frames, else all groups. Those called "(static)" and whatever is no layer
+ * belong to every frame. Pages are those of Inkscape and the frames of FBF.SVG. The length in time
+ * is that of the longest animation that ends, else that after which all loops are back at their
+ * beginning.
  *
  * Returns: false with FL_ERROR_INPUT, naming `path`, if it has no frames of the wanted kind.
  */
@@ -41,24 +44,11 @@ bool fl_select_page(xmlDoc *doc, int page, const char *path, GError **error);
 /* ---- layers and pages ------------------------------------------------------------------------ */
 
 /**
- * The number of frames that a document holds as layers.
- *
- * The frames are the top-level layers of the document, or of its only group: groups that Inkscape
- * marks as layers or Freestyle as frames, else all groups. Those called "(static)" and whatever is
- * no layer belong to every frame.
- */
-int fl_layer_frames_count(const xmlDoc *doc);
-
-/**
  * Keeps one frame, counted from 1 at the bottom, and makes it visible. Removes its label and id,
  * since these name the frame and not its content.
  *
  * Returns: false with FL_ERROR_INPUT, naming `path`, if there is no such frame.
  */
 bool fl_layer_frames_select(xmlDoc *doc, int frame, const char *path, GError **error);
-
-/** The line at which a document says that it moves by itself (SMIL, CSS animations); 0: it does
- * not. */
-int fl_document_moves(const xmlDoc *doc);
 
 #endif

@@ -108,10 +108,10 @@ static char *name_of(const xmlNode *node, const char *id)
             return g_steal_pointer(&name);
     }
     g_autofree char *affinity = fl_foreign_attribute(node, "id");
-    g_autoptr(xmlChar) adobe = fl_attribute(node, "data-name");
+    const char *adobe = fl_attribute(node, "data-name");
     g_autofree char *title = id && !is_generic(id) ? NULL : title_of(node);
     const char *name = affinity && affinity[0] ? affinity
-                       : adobe && adobe[0]     ? (const char *)adobe
+                       : adobe && adobe[0]     ? adobe
                        : title && title[0]     ? title
                        : id                    ? id
                                                : "";

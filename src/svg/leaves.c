@@ -28,36 +28,36 @@ static void append(GString *list, const char *item)
     g_string_append(list, item);
 }
 
-static xmlChar *authored_id(const xmlNode *node)
+static const char *authored_id(const xmlNode *node)
 {
     static const char *const names[] = {"id", FL_COPIED_ID};
     for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
-        g_autoptr(xmlChar) id = fl_attribute(node, names[i]);
-        if (id && !g_str_has_prefix((const char *)id, FL_GROUP_ID))
-            return g_steal_pointer(&id);
+        const char *id = fl_attribute(node, names[i]);
+        if (id && !g_str_has_prefix(id, FL_GROUP_ID))
+            return id;
     }
     return NULL;
 }
 
 static void append_group(Walk *w, const xmlNode *node)
 {
-    g_autoptr(xmlChar) id = fl_attribute(node, "id");
+    const char *id = fl_attribute(node, "id");
     if (id && fl_is_container(node) && g_hash_table_lookup(w->by_id, id) == node)
-        append(w->list[GROUPS], (const char *)id);
+        append(w->list[GROUPS], id);
 }
 
 static void enter(Walk *w, const xmlNode *node, int index)
 {
-    g_autoptr(xmlChar) id = authored_id(node);
-    g_autoptr(xmlChar) classes = fl_attribute(node, "class");
+    const char *id = authored_id(node);
+    const char *classes = fl_attribute(node, "class");
     bool is_layer = false;
-    g_autofree char *label = fl_label_of(node, (const char *)id, &is_layer);
+    g_autofree char *label = fl_label_of(node, id, &is_layer);
     append(w->list[LABELS], label);
     if (label && (is_layer || w->list[LAYERS]->len == 0))
         append(w->list[LAYERS], label);
-    append(w->list[IDS], (const char *)id);
+    append(w->list[IDS], id);
     append_group(w, node);
-    g_auto(GStrv) words = g_strsplit_set(classes ? (const char *)classes : "", " \t\r\n", -1);
+    g_auto(GStrv) words = g_strsplit_set(classes ? classes : "", " \t\r\n", -1);
     for (int i = 0; words[i]; i++)
         append(w->list[CLASSES], words[i]);
     g_string_append_printf(w->list[TREE], w->list[TREE]->len ? "/%d" : "%d", index);
@@ -72,9 +72,9 @@ static char *keep(const Walk *w, const char *text)
 /** The node's id if it is the first of that id, else a new one, which goes into the document. */
 static char *give_id(Walk *w, xmlNode *node)
 {
-    g_autoptr(xmlChar) id = fl_attribute(node, "id");
+    const char *id = fl_attribute(node, "id");
     if (id && id[0] && g_hash_table_lookup(w->by_id, id) == node)
-        return keep(w, (const char *)id);
+        return keep(w, id);
     g_autofree char *made = NULL;
     do {
         g_free(made);
@@ -117,7 +117,8 @@ static const char *outermost_mask(const Walk *w)
 
 static FlLeaf make_leaf(Walk *w, xmlNode *node)
 {
-    g_autoptr(xmlChar) name = authored_id(node);
+    const char *authored = authored_id(node);
+    char *name = keep(w, authored ? authored : ""); // an id may be replaced
     static const char *const markers[] = {"marker", "marker-start", "marker-mid", "marker-end",
                                           NULL};
     bool whole = fl_is_one_of(node, "text image use g svg a");
@@ -131,7 +132,7 @@ static FlLeaf make_leaf(Walk *w, xmlNode *node)
         .id = id,
         .layer = keep(w, masked ? masked : id),
         .mask = w->mask,
-        .name = keep(w, name ? (const char *)name : ""),
+        .name = name,
         .labels = keep(w, w->list[LABELS]->str),
         .layers = keep(w, w->list[LAYERS]->str),
         .ids = keep(w, w->list[IDS]->str),

@@ -14,8 +14,8 @@ typedef struct Lint {
 
 static void warn(const Lint *lint, const xmlNode *node, const char *text)
 {
-    g_autoptr(xmlChar) id = fl_attribute(node, "id");
-    fl_warnings_add(lint->warnings, lint->path, lint->number, (const char *)id, "%s", text);
+    const char *id = fl_attribute(node, "id");
+    fl_warnings_add(lint->warnings, lint->path, lint->number, id, "%s", text);
 }
 
 /**
@@ -110,15 +110,15 @@ static void check_references(const Lint *lint, xmlNode *node)
 
 static void check_path(const Lint *lint, xmlNode *node)
 {
-    g_autoptr(xmlChar) d = fl_attribute(node, "d");
-    const char *rest = d ? fl_path_data_error((const char *)d) : NULL;
+    const char *d = fl_attribute(node, "d");
+    const char *rest = d ? fl_path_data_error(d) : NULL;
     if (!rest)
         return;
-    g_autofree char *good = g_strndup((const char *)d, (gsize)(rest - (const char *)d));
-    fl_set_attribute(node, "d", good); // librsvg would draw on after "1."
+    g_autofree char *good = g_strndup(d, (gsize)(rest - d));
     g_autofree char *text = g_strdup_printf("the path is broken at “%.12s” (character %d) and is "
                                             "drawn up to there",
-                                            rest, (int)(rest - (const char *)d) + 1);
+                                            rest, (int)(rest - d) + 1);
+    fl_set_attribute(node, "d", good); // librsvg would draw on after "1."
     warn(lint, node, text);
 }
 
@@ -167,8 +167,8 @@ static void check_foreign(const Lint *lint, xmlNode *node)
 /** Returns: true if an attribute has more than one value. */
 static bool is_list(const xmlNode *node, const char *name)
 {
-    g_autoptr(xmlChar) text = fl_attribute(node, name);
-    return text && strpbrk(g_strstrip((char *)text), " ,\t\r\n");
+    g_autofree char *text = fl_property(node, name);
+    return text && strpbrk(text, " ,\t\r\n");
 }
 
 /** Warns of text that librsvg cannot lay out. */
@@ -180,9 +180,9 @@ static void check_text(const Lint *lint, const xmlNode *node)
     if (on_path)
         warn(lint, node, "text on a path is left out");
     else if (is_list(node, "x") || is_list(node, "y") || is_list(node, "dx") ||
-             is_list(node, "dy") || xmlHasProp((xmlNode *)node, (xmlChar *)"rotate"))
+             is_list(node, "dy") || fl_attribute(node, "rotate"))
         warn(lint, node, "places and turns of single letters are left out");
-    if (xmlHasProp((xmlNode *)node, (xmlChar *)"textLength"))
+    if (fl_attribute(node, "textLength"))
         warn(lint, node, "textLength is left out: the text has its own width");
 }
 
@@ -205,10 +205,10 @@ static void check_values(const Lint *lint, const xmlNode *node)
     if (fl_is(node, "feFlood") && has_value(node, "result", FL_NO_BACKGROUND))
         warn(lint, node->parent, "BackgroundImage is empty: filters cannot read what is below");
     if (fl_is(node, "clipPath") && has_value(node, "clipPathUnits", "objectBoundingBox") &&
-        xmlHasProp((xmlNode *)node, (xmlChar *)"transform"))
+        fl_attribute(node, "transform"))
         warn(lint, node, "the transform of a clip path in units of the box is applied in the box");
-    g_autoptr(xmlChar) d = fl_is(node, "path") ? fl_attribute(node, "d") : NULL;
-    if (d && strpbrk((const char *)d + (*d != '\0'), "Mm") &&
+    const char *d = fl_is(node, "path") ? fl_attribute(node, "d") : NULL;
+    if (d && strpbrk(d + (*d != '\0'), "Mm") &&
         (fl_is_set(node, "marker-mid") || fl_is_set(node, "marker-start")))
         warn(lint, node, "markers where a path begins anew may turn another way or be left out");
     g_autofree char *clip = fl_is(node->parent, "clipPath") ? fl_property(node, "clip-path") : NULL;

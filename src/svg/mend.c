@@ -20,15 +20,13 @@ typedef struct Mend {
 static char *name_input(xmlNode *step, int number)
 {
     xmlNode *before = xmlPreviousElementSibling(step);
-    xmlChar *in = fl_attribute(step, "in");
-    if (!in && before)
-        in = fl_attribute(before, "result");
-    char *name = in       ? g_strdup((char *)in)
+    const char *own = fl_attribute(step, "in");
+    const char *in = own || !before ? own : fl_attribute(before, "result");
+    char *name = in       ? g_strdup(in)
                  : before ? g_strdup_printf("fl-before-%d", number)
                           : g_strdup("SourceGraphic");
     if (!in && before)
         fl_set_attribute(before, "result", name);
-    xmlFree(in);
     return name;
 }
 
@@ -50,7 +48,7 @@ static void mend_shadow(xmlNode *node, int number)
     g_autofree char *in = name_input(node, number);
     g_autofree char *place = g_strdup_printf("fl-shadow-%d", number);
     for (size_t i = 0; i < G_N_ELEMENTS(lengths); i++)
-        if (!xmlHasProp(node, (const xmlChar *)lengths[i]))
+        if (!fl_attribute(node, lengths[i]))
             fl_set_attribute(node, lengths[i], "2");
     fl_set_attribute(add_step(node, "feGaussianBlur"), "in", in);
     fl_set_attribute(add_step(node, "feOffset"), "result", place);
@@ -73,8 +71,8 @@ static bool redirect(xmlNode *node, const char *input, const char *name)
     bool found = false;
     FL_EACH_ELEMENT (step, node) {
         for (size_t i = 0; i < G_N_ELEMENTS(inputs); i++) {
-            g_autoptr(xmlChar) in = fl_attribute(step, inputs[i]);
-            if (xmlStrEqual(in, (const xmlChar *)input)) {
+            const char *in = fl_attribute(step, inputs[i]);
+            if (g_strcmp0(in, input) == 0) {
                 fl_set_attribute(step, inputs[i], name);
                 found = true;
             }
@@ -89,7 +87,7 @@ static xmlNode *add_input(xmlNode *filter, const char *kind, const char *name)
 {
     xmlNode *first = xmlFirstElementChild(filter);
     xmlNode *step = xmlNewDocNode(filter->doc, filter->ns, (const xmlChar *)kind, NULL);
-    if (!xmlHasProp(first, (const xmlChar *)"in")) // it was the picture
+    if (!fl_attribute(first, "in")) // it was the picture
         fl_set_attribute(first, "in", "SourceGraphic");
     fl_set_attribute(step, "in", "SourceGraphic");
     fl_set_attribute(step, "result", name);
@@ -97,15 +95,15 @@ static xmlNode *add_input(xmlNode *filter, const char *kind, const char *name)
 }
 
 /** The mode of a filter that only blends with the background, as old versions of Inkscape wrote
- * them; NULL of others. To be freed with xmlFree(). */
-static xmlChar *blend_mode(const xmlNode *filter)
+ * them; NULL of others. */
+static const char *blend_mode(const xmlNode *filter)
 {
     xmlNode *only = xmlFirstElementChild((xmlNode *)filter);
     if (!only || !fl_is(only, "feBlend") || xmlNextElementSibling(only))
         return NULL;
-    g_autoptr(xmlChar) in = fl_attribute(only, "in"), in2 = fl_attribute(only, "in2");
-    const bool blends = xmlStrEqual(in2, (const xmlChar *)"BackgroundImage") &&
-                        (!in || xmlStrEqual(in, (const xmlChar *)"SourceGraphic"));
+    const char *in = fl_attribute(only, "in"), *in2 = fl_attribute(only, "in2");
+    const bool blends =
+        g_strcmp0(in2, "BackgroundImage") == 0 && (!in || g_strcmp0(in, "SourceGraphic") == 0);
     return blends ? fl_attribute(only, "mode") : NULL;
 }
 
@@ -116,7 +114,7 @@ static xmlChar *blend_mode(const xmlNode *filter)
  */
 static void mend_inputs(xmlNode *filter)
 {
-    g_autoptr(xmlChar) mode = blend_mode(filter);
+    const char *mode = blend_mode(filter);
     bool colours = false;
     FL_EACH_ELEMENT (step, filter)
         colours |= fl_is_one_of(step, "feColorMatrix feComponentTransfer");
@@ -133,10 +131,9 @@ static void mend_blend(const Mend *m, xmlNode *node)
 {
     g_autofree char *value = fl_property(node, "filter");
     const xmlNode *filter = fl_referred_by(value, "filter", m->ids);
-    g_autoptr(xmlChar) mode = filter ? blend_mode(filter) : NULL;
-    g_autofree char *style = mode ? g_strdup_printf("filter:none;mix-blend-mode:%s", mode) : NULL;
-    if (style)
-        fl_declare(node, style);
+    const char *mode = filter ? blend_mode(filter) : NULL;
+    if (mode)
+        fl_declare(node, "filter:none;mix-blend-mode:%s", mode);
 }
 
 /* ---- numbers of filters ---------------------------------------------------------------------- */
@@ -147,8 +144,8 @@ static void mend_numbers(xmlNode *step)
     static const char *const names[] = {"dx",           "dy",     "scale",        "surfaceScale",
                                         "stdDeviation", "radius", "baseFrequency"};
     for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
-        g_autoptr(xmlChar) text = fl_attribute(step, names[i]);
-        const char *s = (const char *)text;
+        const char *text = fl_attribute(step, names[i]);
+        const char *s = text;
         const bool signless = i >= 4;
         if (s && (!*s || s[strspn(s, "0123456789+-.eE ,\t\r\n")] || (signless && *s == '-')))
             fl_set_attribute(step, names[i], NULL);
@@ -159,9 +156,9 @@ static void mend_numbers(xmlNode *step)
 
 static double share_of(const xmlNode *node, const char *name, double missing)
 {
-    g_autoptr(xmlChar) text = fl_attribute(node, name);
-    const double value = text ? g_ascii_strtod((char *)text, NULL) : missing;
-    return text && strchr((char *)text, '%') ? value / 100 : value;
+    const char *text = fl_attribute(node, name);
+    const double value = text ? g_ascii_strtod(text, NULL) : missing;
+    return text && strchr(text, '%') ? value / 100 : value;
 }
 
 /** A gradient of no length is the colour of its last stop. */
@@ -188,8 +185,8 @@ static void mend_gradient(xmlNode *node)
 /** Cuts a list of points off where it breaks, and half a pair or a comma at its end. */
 static void mend_points(xmlNode *node)
 {
-    g_autoptr(xmlChar) text = fl_attribute(node, "points");
-    const char *s = (const char *)text, *good = s;
+    const char *text = fl_attribute(node, "points");
+    const char *s = text, *good = s;
     double v;
     int n = 0;
     s = s ? fl_css_space(s) : NULL;
@@ -201,7 +198,7 @@ static void mend_points(xmlNode *node)
     }
     if (!s || !*fl_css_space(good))
         return;
-    g_autofree char *pairs = g_strndup((const char *)text, (gsize)(good - (const char *)text));
+    g_autofree char *pairs = g_strndup(text, (gsize)(good - text));
     fl_set_attribute(node, "points", pairs);
 }
 
@@ -213,16 +210,14 @@ static xmlNode *wrap(xmlNode *node, const xmlNode *clip)
     static const char *const outer[] = {"id", "transform"};
     g_autofree char *value = fl_property(clip, "clip-path");
     g_autofree char *blend = fl_property(node, "mix-blend-mode");
-    g_autofree char *declarations =
-        g_strdup_printf("clip-path:%s;mix-blend-mode:%s", value, blend ? blend : "normal");
     xmlNode *group = xmlNewDocNode(node->doc, node->parent->ns, (const xmlChar *)"g", NULL);
-    fl_declare(group, declarations);
+    fl_declare(group, "clip-path:%s;mix-blend-mode:%s", value, blend ? blend : "normal");
     if (blend)
         fl_declare(node, "mix-blend-mode:normal");
     for (size_t i = 0; i < G_N_ELEMENTS(outer); i++) {
-        g_autoptr(xmlChar) text = fl_attribute(node, outer[i]);
+        const char *text = fl_attribute(node, outer[i]);
         if (text)
-            fl_set_attribute(group, outer[i], (char *)text);
+            fl_set_attribute(group, outer[i], text);
         fl_set_attribute(node, outer[i], NULL);
     }
     xmlReplaceNode(node, group);
@@ -270,14 +265,14 @@ static bool append_dots(GString *d, const FlOutlines *outlines)
  * leaves square ones of a path without length out. */
 static void mend_caps(xmlNode *path)
 {
-    g_autoptr(xmlChar) d = fl_attribute(path, "d");
+    const char *d = fl_attribute(path, "d");
     g_autofree char *cap = fl_inherited_property(path, "stroke-linecap");
     const bool square = cap && strcmp(cap, "square") == 0;
-    if (!d || (!square && strpbrk((const char *)d, "LlHhVvCcSsQqTtAaZz"))) // as nearly all have
+    if (!d || (!square && strpbrk(d, "LlHhVvCcSsQqTtAaZz"))) // as nearly all have
         return;
     g_autoptr(FlOutlines) outlines = fl_outlines_of_shape(path, 96, (FlPageSize){1, 1});
     GString *dots = g_string_new(NULL);
-    g_string_prepend(dots, append_dots(dots, outlines) ? "" : (const char *)d);
+    g_string_prepend(dots, append_dots(dots, outlines) ? "" : d);
     if (outlines->n_subpaths == 0)
         fl_declare(path, "stroke-linecap:butt");
     else if (square)
@@ -316,9 +311,8 @@ static void mend_baseline(xmlNode *text)
     g_autofree char *word = fl_property(text, "alignment-baseline");
     const int around = fl_is(text, "tspan") ? baseline_of(text->parent) : 0;
     const int height = (word ? height_of(word) : baseline_of(text)) - around;
-    g_autofree char *shift = g_strdup_printf("baseline-shift:%d%%", -height);
     if (height != 0 && !own)
-        fl_declare(text, shift);
+        fl_declare(text, "baseline-shift:%d%%", -height);
 }
 
 /* ---- words that librsvg does not know -------------------------------------------------------- */
@@ -327,7 +321,7 @@ static void mend_words(xmlNode *node)
 {
     static const char *const places[] = {"refX", "refY"};
     for (int i = 0; fl_is(node, "marker") && i < 2; i++) {
-        g_autoptr(xmlChar) text = fl_attribute(node, places[i]);
+        const char *text = fl_attribute(node, places[i]);
         if (text && g_ascii_isalpha(*text)) // "center", for which librsvg drops all attributes
             fl_set_attribute(node, places[i], NULL);
     }

@@ -22,7 +22,7 @@ static void name_groups(xmlNode *node, GHashTable *ids, int *n_made)
     FL_EACH_ELEMENT (child, node) {
         if (fl_is_undrawn(child))
             continue;
-        g_autoptr(xmlChar) id = fl_attribute(child, "id");
+        const char *id = fl_attribute(child, "id");
         if (!id && (fl_is_container(child) || fl_is(child, "use"))) {
             g_autofree char *made = NULL;
             do {
@@ -48,8 +48,8 @@ bool fl_is_whole(const xmlNode *node, const char *const *whole)
 {
     if (!whole)
         return false;
-    g_autoptr(xmlChar) id = fl_attribute(node, "id");
-    return id && g_strv_contains(whole, (const char *)id);
+    const char *id = fl_attribute(node, "id");
+    return id && g_strv_contains(whole, id);
 }
 
 /** Returns: true if one of the languages is the user's; without a locale it is English. */
@@ -82,13 +82,12 @@ static bool has_features(const char *features)
 
 bool fl_is_eligible(const xmlNode *node)
 {
-    g_autoptr(xmlChar) features = fl_attribute(node, "requiredFeatures");
-    if (features && !has_features((const char *)features))
+    const char *features = fl_attribute(node, "requiredFeatures");
+    if (features && !has_features(features))
         return false;
-    g_autoptr(xmlChar) extensions = fl_attribute(node, "requiredExtensions");
-    g_autoptr(xmlChar) languages = fl_attribute(node, "systemLanguage");
-    return (!extensions || !*g_strstrip((char *)extensions)) &&
-           (!languages || speaks((const char *)languages));
+    const char *extensions = fl_attribute(node, "requiredExtensions");
+    const char *languages = fl_attribute(node, "systemLanguage");
+    return (!extensions || !*fl_css_space(extensions)) && (!languages || speaks(languages));
 }
 
 /** Ineligible children go into a <defs>, where references still find them. */
@@ -116,12 +115,12 @@ static void resolve_switch(xmlNode *node)
 static void resolve_use(const Work *work, xmlNode *use)
 {
     g_autofree char *href = fl_href(use);
-    g_autoptr(xmlChar) id = fl_attribute(use, "id");
+    const char *id = fl_attribute(use, "id");
     if (href && href[0] != '#')
         return; // librsvg draws it as one leaf
-    const bool made = id && g_str_has_prefix((const char *)id, FL_GROUP_ID);
+    const bool made = id && g_str_has_prefix(id, FL_GROUP_ID);
     if (href && g_hash_table_contains(work->ids, href + 1) && fl_use_is_drawn(use))
-        fl_warnings_add(work->warnings, work->path, work->number, made ? NULL : (const char *)id,
+        fl_warnings_add(work->warnings, work->path, work->number, made ? NULL : id,
                         "<use> of “%s” shows itself and is left out", href);
     fl_declare(use, "display:none");
 }

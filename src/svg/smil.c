@@ -165,10 +165,8 @@ static void set_value(xmlNode *node, const char *name, const char *value)
     xmlAttr *foreign = NULL;
     for (xmlAttr *a = node->properties; a; a = a->next)
         foreign = a->ns && strcmp((const char *)a->name, name) == 0 ? a : foreign;
-    if (declared) {
-        g_autofree char *declaration = g_strdup_printf("%s:%s !important", name, value);
-        fl_declare(node, declaration);
-    }
+    if (declared)
+        fl_declare(node, "%s:%s !important", name, value);
     if (declared && !place)
         return;
     if (foreign) {
@@ -205,11 +203,11 @@ static void apply_transform(const FlAnimation *a, double seconds)
         n++;
     bool adds;
     g_autofree char *value = value_at(a, neutral[scale][CLAMP(n, 1, 3) - 1], seconds, &adds);
-    g_autoptr(xmlChar) own = fl_attribute(a->target, a->attribute);
+    const char *own = fl_attribute(a->target, a->attribute);
     if (!value)
         return;
     g_autofree char *all =
-        g_strdup_printf("%s%s%s(%s)", adds && own ? (const char *)own : "", adds && own ? " " : "",
+        g_strdup_printf("%s%s%s(%s)", adds && own ? own : "", adds && own ? " " : "",
                         type ? type : "translate", value);
     fl_set_attribute(a->target, a->attribute, all);
 }
@@ -271,7 +269,7 @@ static void apply_motion(const FlTimeline *timeline, const FlAnimation *a, doubl
     const FlInterval *interval = fl_interval_at(a, seconds);
     g_autoptr(FlOutlines) path = interval ? motion_path(timeline, a) : NULL;
     g_autofree char *rotate = fl_trimmed_attribute(a->node, "rotate");
-    g_autoptr(xmlChar) own = fl_attribute(a->target, "transform");
+    const char *own = fl_attribute(a->target, "transform");
     g_autofree char *accumulate = fl_trimmed_attribute(a->node, "accumulate");
     double rounds, direction = 0;
     FlPoint at, end;
@@ -289,7 +287,7 @@ static void apply_motion(const FlTimeline *timeline, const FlAnimation *a, doubl
     g_autofree char *x = fl_css_number_text(at.x), *y = fl_css_number_text(at.y);
     g_autofree char *turn = fl_css_number_text(angle);
     g_autofree char *all =
-        g_strdup_printf("translate(%s,%s) rotate(%s) %s", x, y, turn, own ? (char *)own : "");
+        g_strdup_printf("translate(%s,%s) rotate(%s) %s", x, y, turn, own ? own : "");
     fl_set_attribute(a->target, "transform", all);
 }
 
@@ -334,8 +332,8 @@ void fl_smil_apply(xmlDoc *doc, double seconds, FlFilmLength *length)
 {
     FlTimeline timeline = fl_timeline_of(doc);
     g_autoptr(GPtrArray) order = g_ptr_array_new();
-    for (guint i = 0; i < timeline.animation->len; i++)
-        g_ptr_array_add(order, timeline.animation->pdata[i]);
+    FL_EACH (FlAnimation, a, timeline.animation)
+        g_ptr_array_add(order, a);
     // a stable sort: the order of the document decides between equals
     g_ptr_array_sort_with_data(order, compare_begins, &seconds);
     g_autoptr(GHashTable) first = g_hash_table_new(NULL, NULL); // target -> its motion that counts
@@ -345,7 +343,7 @@ void fl_smil_apply(xmlDoc *doc, double seconds, FlFilmLength *length)
         if (replaces(a, seconds))
             g_hash_table_insert(first, a->target, GUINT_TO_POINTER(i));
         if (length)
-            fl_animation_add_length(order->pdata[i], length);
+            fl_animation_add_length(a, length);
     }
     for (guint i = 0; i < order->len; i++) { // in front of all transforms
         const FlAnimation *a = order->pdata[i];

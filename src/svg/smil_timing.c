@@ -19,8 +19,8 @@ typedef struct Condition {
 
 char *fl_trimmed_attribute(const xmlNode *node, const char *name)
 {
-    g_autoptr(xmlChar) value = fl_attribute(node, name);
-    return value ? g_strstrip(g_strdup((const char *)value)) : NULL;
+    const char *value = fl_attribute(node, name);
+    return value ? g_strstrip(g_strdup(value)) : NULL;
 }
 
 /** Reads a clock value [SMIL 3 §5.4]: 02:30:03, 00:10.25, 3.2h, 45min, 30s, 5ms, 12. */
@@ -61,12 +61,9 @@ static double duration(const xmlNode *node, const char *name, double missing)
 
 static int index_of(const FlTimeline *timeline, const char *id)
 {
-    for (guint i = 0; i < timeline->animation->len; i++) {
-        const FlAnimation *a = timeline->animation->pdata[i];
-        g_autoptr(xmlChar) own = fl_attribute(a->node, "id");
-        if (own && strcmp((const char *)own, id) == 0)
-            return (int)i;
-    }
+    FL_EACH (const FlAnimation, a, timeline->animation)
+        if (g_strcmp0(fl_attribute(a->node, "id"), id) == 0)
+            return (int)(a - (const FlAnimation *)(void *)timeline->animation->data);
     return -1;
 }
 
@@ -120,7 +117,7 @@ xmlNode *fl_timeline_referred(const FlTimeline *timeline, const xmlNode *node, x
     return !href ? missing : *href == '#' ? g_hash_table_lookup(timeline->ids, href + 1) : NULL;
 }
 
-static void animation_free(void *data)
+static void animation_clear(void *data)
 {
     FlAnimation *a = data;
     g_free(a->attribute);
@@ -128,7 +125,6 @@ static void animation_free(void *data)
     for (size_t i = 0; i < G_N_ELEMENTS(arrays); i++)
         if (arrays[i])
             g_array_unref(arrays[i]);
-    g_free(a);
 }
 
 /** The time of all rounds [SMIL 3 §5.4.5]. */
@@ -149,9 +145,8 @@ static void collect(FlTimeline *timeline, xmlNode *node)
 {
     FL_EACH_ELEMENT (child, node) {
         if (fl_is_animation(child)) {
-            FlAnimation *a = g_new0(FlAnimation, 1);
-            a->node = child;
-            g_ptr_array_add(timeline->animation, a);
+            const FlAnimation a = {.node = child};
+            g_array_append_val(timeline->animation, a);
         } else {
             collect(timeline, child);
         }
@@ -193,8 +188,7 @@ static void add_time(GArray *times, double t)
 /** Tells the animations that wait for this one of a new interval. */
 static void tell(const FlTimeline *timeline, int base, const FlInterval *interval)
 {
-    for (guint i = 0; i < timeline->animation->len; i++) {
-        const FlAnimation *a = timeline->animation->pdata[i];
+    FL_EACH (const FlAnimation, a, timeline->animation)
         for (int ends = 0; ends < 2; ends++) {
             const GArray *list = ends ? a->end : a->begin;
             FL_EACH (const Condition, c, list) {
@@ -203,7 +197,6 @@ static void tell(const FlTimeline *timeline, int base, const FlInterval *interva
                     add_time(ends ? a->ends : a->begins, t);
             }
         }
-    }
 }
 
 /** The end of an interval that begins at t. */
@@ -236,23 +229,22 @@ static void run(const FlTimeline *timeline)
     const FlInterval start = {0, 0};
     tell(timeline, -1, &start);
     for (int n = 0; n < MOST_EVENTS; n++) {
-        int first = -1;
+        FlAnimation *a = NULL;
         double t = HORIZON;
-        for (guint i = 0; i < timeline->animation->len; i++) {
-            const double begin = next_begin(timeline->animation->pdata[i]);
+        FL_EACH (FlAnimation, other, timeline->animation) {
+            const double begin = next_begin(other);
             if (begin < t)
-                first = (int)i, t = begin;
+                a = other, t = begin;
         }
-        if (first < 0)
+        if (!a)
             return;
-        FlAnimation *a = timeline->animation->pdata[first];
         if (a->interval->len > 0) {
             FlInterval *last = &g_array_index(a->interval, FlInterval, a->interval->len - 1);
             last->end = fmin(last->end, t);
         }
         const FlInterval interval = {t, end_of(a, t)};
         g_array_append_val(a->interval, interval);
-        tell(timeline, first, &interval);
+        tell(timeline, (int)(a - (FlAnimation *)(void *)timeline->animation->data), &interval);
     }
 }
 
@@ -303,21 +295,21 @@ void fl_animation_add_length(const FlAnimation *a, FlFilmLength *length)
 
 FlTimeline fl_timeline_of(xmlDoc *doc)
 {
-    FlTimeline timeline = {g_ptr_array_new_with_free_func(animation_free), fl_document_ids(doc)};
+    FlTimeline timeline = {g_array_new(FALSE, FALSE, sizeof(FlAnimation)), fl_document_ids(doc)};
+    g_array_set_clear_func(timeline.animation, animation_clear);
     collect(&timeline, xmlDocGetRootElement(doc));
-    for (guint i = 0; i < timeline.animation->len; i++)
-        read_animation(&timeline, timeline.animation->pdata[i]);
+    FL_EACH (FlAnimation, a, timeline.animation)
+        read_animation(&timeline, a);
     run(&timeline);
     return timeline;
 }
 
 void fl_timeline_clear(FlTimeline *timeline)
 {
-    for (guint i = 0; i < timeline->animation->len; i++) {
-        xmlNode *node = ((FlAnimation *)timeline->animation->pdata[i])->node;
-        xmlUnlinkNode(node);
-        xmlFreeNode(node);
+    FL_EACH (FlAnimation, a, timeline->animation) {
+        xmlUnlinkNode(a->node);
+        xmlFreeNode(a->node);
     }
-    g_ptr_array_unref(timeline->animation);
+    g_array_unref(timeline->animation);
     g_hash_table_unref(timeline->ids);
 }

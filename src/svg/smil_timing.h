@@ -21,8 +21,8 @@ typedef struct FlAnimation {
 } FlAnimation;
 
 typedef struct FlTimeline {
-    GPtrArray *animation; // FlAnimation, in the order of the document
-    GHashTable *ids;      // of elements
+    GArray *animation; // FlAnimation, in the order of the document
+    GHashTable *ids;   // of elements
 } FlTimeline;
 
 /** The length of animations. */

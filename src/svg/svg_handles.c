@@ -60,7 +60,7 @@ static xmlNode *group_of(GHashTable *ids, const FlGroupMask *mask)
 /** Adds declarations to a node and its ancestors, up to the first that already has them. */
 static void declare_outwards(xmlNode *node, const char *declarations)
 {
-    while (node && fl_declare(node, declarations))
+    while (node && fl_declare(node, "%s", declarations))
         node = fl_element_around(node);
 }
 
@@ -119,10 +119,11 @@ static gpointer variant_key(int part, int kind)
 /** Leaves out fills or strokes. */
 static void keep_part(xmlDoc *doc, const FlLeaves *leaves, FlPart part)
 {
-    static const char *const hide[] = {NULL, "stroke:none !important", "fill:none !important"};
+    static const char *const hide[] = {NULL, "stroke", "fill"};
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
     for (guint i = 0; i < leaves->leaf->len && hide[part]; i++)
-        fl_declare(g_hash_table_lookup(ids, g_array_index(leaves->leaf, FlLeaf, i).id), hide[part]);
+        fl_declare(g_hash_table_lookup(ids, g_array_index(leaves->leaf, FlLeaf, i).id),
+                   "%s:none !important", hide[part]);
 }
 
 /** Makes a handle and keeps it in svg->variants. */

@@ -225,8 +225,8 @@ char *fl_affine_text(const FlAffine *m)
 FlAffine fl_affine_of(const xmlNode *node)
 {
     FlAffine m = FL_AFFINE_NONE;
-    g_autoptr(xmlChar) text = fl_attribute(node, "transform");
+    const char *text = fl_attribute(node, "transform");
     if (text)
-        fl_affine_parse((const char *)text, &m);
+        fl_affine_parse(text, &m);
     return m;
 }

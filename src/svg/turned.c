@@ -26,8 +26,8 @@ static int count_elements(const xmlNode *node)
 /** Gives a blur the two deviations that the map m, as librsvg applies it, makes equal. */
 static void turn_blur(xmlNode *step, const FlAffine *m)
 {
-    g_autoptr(xmlChar) text = fl_attribute(step, "stdDeviation");
-    const char *s = text ? (const char *)text : fl_is(step, "feDropShadow") ? "2" : "0";
+    const char *text = fl_attribute(step, "stdDeviation");
+    const char *s = text ? text : fl_is(step, "feDropShadow") ? "2" : "0";
     double across, down;
     if (!fl_number_read(&s, &across))
         return;
@@ -58,10 +58,9 @@ static void mend_blur(Turned *t, xmlNode *node, const FlAffine *map)
     if (!filter || !blurs || (units && strcmp(units, "objectBoundingBox") == 0))
         return;
     g_autofree char *id = g_strdup_printf("fl-turned-%d", t->n_made++);
-    g_autofree char *declaration = g_strdup_printf("filter:url(#%s)", id);
     xmlNode *turned = xmlAddNextSibling(filter, xmlDocCopyNode(filter, filter->doc, 1));
     fl_set_attribute(turned, "id", id);
-    fl_declare(node, declaration);
+    fl_declare(node, "filter:url(#%s)", id);
     t->n_copied += count_elements(turned);
     FL_EACH_ELEMENT (step, turned)
         if (fl_is_one_of(step, "feGaussianBlur feDropShadow"))
@@ -76,7 +75,7 @@ static const xmlNode *server_with(const Turned *t, const xmlNode *server, const 
 {
     for (int k = 0; server && k < MOST_REFERENCES; k++) {
         g_autofree char *href = fl_href(server);
-        if (name ? xmlHasProp((xmlNode *)server, (const xmlChar *)name) != NULL
+        if (name ? fl_attribute(server, name) != NULL
                  : xmlFirstElementChild((xmlNode *)server) != NULL)
             return server;
         server = href && *href == '#' ? g_hash_table_lookup(t->ids, href + 1) : NULL;
@@ -84,7 +83,7 @@ static const xmlNode *server_with(const Turned *t, const xmlNode *server, const 
     return NULL;
 }
 
-static xmlChar *server_attribute(const Turned *t, const xmlNode *server, const char *name)
+static const char *server_attribute(const Turned *t, const xmlNode *server, const char *name)
 {
     const xmlNode *with = server_with(t, server, name);
     return with ? fl_attribute(with, name) : NULL;
@@ -93,8 +92,8 @@ static xmlChar *server_attribute(const Turned *t, const xmlNode *server, const c
 /** Returns: true if an attribute says, or is missing and stands for, objectBoundingBox. */
 static bool is_in_box(const Turned *t, const xmlNode *server, const char *name, bool missing)
 {
-    g_autoptr(xmlChar) units = server_attribute(t, server, name);
-    return units ? strcmp((char *)units, "objectBoundingBox") == 0 : missing;
+    const char *units = server_attribute(t, server, name);
+    return units ? strcmp(units, "objectBoundingBox") == 0 : missing;
 }
 
 /** Sets an attribute that is a share of a side to a number: from + side * share. */
@@ -102,9 +101,9 @@ static void set_share(const Turned *t, xmlNode *own, const xmlNode *server, cons
                       const char *missing, double from, double side)
 {
     const FlCssUnits none = {0};
-    g_autoptr(xmlChar) text = server_attribute(t, server, name);
+    const char *text = server_attribute(t, server, name);
     double share;
-    if (!(text || missing) || !fl_css_number(text ? (char *)text : missing, &none, 1, &share))
+    if (!(text || missing) || !fl_css_number(text ? text : missing, &none, 1, &share))
         return;
     share = from + side * share;
     fl_set_numbers(own, name, &share, 1);
@@ -117,10 +116,10 @@ static void place_gradient(const Turned *t, xmlNode *own, const xmlNode *server,
                                             {"cx", ".5"}, {"cy", ".5"}, {"r", ".5"}, {"fx", NULL},
                                             {"fy", NULL}, {"fr", NULL}};
     const FlAffine place = {box.width, 0, 0, box.height, box.x, box.y};
-    g_autoptr(xmlChar) transform = server_attribute(t, server, "gradientTransform");
+    const char *transform = server_attribute(t, server, "gradientTransform");
     FlAffine turn = FL_AFFINE_NONE;
     if (transform)
-        fl_affine_parse((const char *)transform, &turn);
+        fl_affine_parse(transform, &turn);
     turn = fl_affine_multiply(&place, &turn);
     g_autofree char *text = fl_affine_text(&turn);
     fl_set_attribute(own, "gradientUnits", "userSpaceOnUse");
@@ -161,20 +160,19 @@ static void mend_paint(Turned *t, xmlNode *node, const char *property)
     const bool in_box = server && (pattern ? is_in_box(t, server, "patternUnits", true) ||
                                                  is_in_box(t, server, "patternContentUnits", false)
                                            : is_in_box(t, server, "gradientUnits", true));
-    g_autoptr(xmlChar) id = in_box ? fl_attribute(server, "id") : NULL;
+    const char *id = in_box ? fl_attribute(server, "id") : NULL;
     FlCssBox box;
     if (!id || !fl_css_fill_box(node, &t->units, &box) || !(box.width > 0 && box.height > 0))
         return;
     g_autofree char *name = g_strdup_printf("fl-turned-%d", t->n_made++);
-    g_autofree char *href = g_strconcat("#", (char *)id, NULL);
-    g_autofree char *declaration = g_strdup_printf("%s:url(#%s)", property, name);
+    g_autofree char *href = g_strconcat("#", id, NULL);
     xmlNode *own = xmlDocCopyNode(server, node->doc, 2); // with its namespaces, without content
     fl_set_attribute(own, "id", name);
     fl_set_attribute(own, "href", href);
     (pattern ? place_pattern : place_gradient)(t, own, server, box);
     xmlAddNextSibling(server, own);
     t->n_copied += count_elements(own);
-    fl_declare(node, declaration);
+    fl_declare(node, "%s:url(#%s)", property, name);
 }
 
 /* ---- the document ---------------------------------------------------------------------------- */

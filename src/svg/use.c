@@ -20,8 +20,8 @@ typedef struct Shown {
 
 static bool is_zero(const xmlNode *node, const char *name)
 {
-    g_autoptr(xmlChar) length = fl_attribute(node, name);
-    return length && g_ascii_strtod((const char *)length, NULL) == 0;
+    const char *length = fl_attribute(node, name);
+    return length && g_ascii_strtod(length, NULL) == 0;
 }
 
 bool fl_use_is_drawn(const xmlNode *use)
@@ -43,11 +43,11 @@ static double bytes_of(const xmlNode *text)
  * unique, and counts them. */
 static void link_copy(Uses *uses, xmlNode *copy, const xmlNode *from)
 {
-    g_autoptr(xmlChar) id = fl_attribute(copy, "id");
+    const char *id = fl_attribute(copy, "id");
     copy->_private = from->_private ? from->_private : (xmlNode *)from;
     if (id) {
+        fl_set_attribute(copy, FL_COPIED_ID, id);
         fl_set_attribute(copy, "id", NULL);
-        fl_set_attribute(copy, FL_COPIED_ID, (const char *)id);
     }
     uses->n_elements++;
     uses->bytes += bytes_of(copy->children);
@@ -117,25 +117,24 @@ GHashTable *fl_uses_copy(xmlDoc *doc, const char *path, GError **error)
 
 /* ---- showing --------------------------------------------------------------------------------- */
 
-/** Removes an attribute. Returns: its value, to be freed with xmlFree(), or NULL. */
-static xmlChar *take(xmlNode *node, const char *name)
+/** Removes an attribute. Returns: its value, to be freed, or NULL. */
+static char *take(xmlNode *node, const char *name)
 {
-    xmlChar *value = fl_attribute(node, name);
-    if (value)
-        fl_set_attribute(node, name, NULL);
+    char *value = g_strdup(fl_attribute(node, name));
+    fl_set_attribute(node, name, NULL);
     return value;
 }
 
 /** The size that <use> gives, if any, or that of the symbol itself. */
-static void give_size(xmlNode *copy, const char *name, const xmlChar *size, bool symbol)
+static void give_size(xmlNode *copy, const char *name, const char *size, bool symbol)
 {
-    if (size || (symbol && !xmlHasProp(copy, (const xmlChar *)name)))
-        fl_set_attribute(copy, name, size ? (const char *)size : "100%");
+    if (size || (symbol && !fl_attribute(copy, name)))
+        fl_set_attribute(copy, name, size ? size : "100%");
 }
 
 void fl_use_give_size(xmlNode *use, xmlNode *copy)
 {
-    g_autoptr(xmlChar) width = take(use, "width"), height = take(use, "height");
+    g_autofree char *width = take(use, "width"), *height = take(use, "height");
     const bool symbol = fl_is(copy, "symbol");
     g_autofree char *overflow = symbol ? fl_property(copy, "overflow") : NULL;
     if (symbol)
