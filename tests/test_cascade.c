@@ -236,6 +236,12 @@ static void values_become_those_of_svg_1(void)
     }
     assert_value("<g style='--c:#123456'><path id='a' style='fill:var(--c)'/></g>", "fill",
                  "#123456");
+    assert_value("<svg width='200' height='50' viewBox='0 0 100 25'><path id='a' stroke-width='2' "
+                 "vector-effect='non-scaling-stroke'/></svg>",
+                 "stroke-width", "1");
+    assert_value("<g style='color:red'><path id='a' style='color:currentColor'/></g>", "color",
+                 "inherit");
+    assert_value("<path id='a' d='M0 0h9' style='d:path(\"bad\")'/>", "d", "M0 0h9");
     assert_value("<style>@property --c{initial-value:#123456;inherits:false}</style>"
                  "<g style='--c:red'><path id='a' style='fill:var(--c)'/></g>",
                  "fill", "#123456");

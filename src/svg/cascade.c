@@ -218,6 +218,8 @@ static GArray *declared_values(Cascade *c, const xmlNode *node, const xmlNode *s
 
 static const char *find_variable(const void *data, const char *name)
 {
+    if (g_ascii_strcasecmp(name, "currentcolor") == 0)
+        return ((const Style *)data)->colour;
     const GHashTable *own = ((const Style *)data)->own;
     const bool inherits = !own || !g_hash_table_contains((GHashTable *)own, name);
     for (const Style *s = data; s; s = s->around) {
@@ -309,8 +311,8 @@ static char *compute(Cascade *c, const char *name, const FlCssProperty *property
         value = "unset";
     }
     const char *keyword = resolve_keyword(property, value);
-    if (keyword)
-        return g_strdup(keyword);
+    if (keyword || (strcmp(name, "color") == 0 && g_ascii_strcasecmp(value, "currentcolor") == 0))
+        return g_strdup(keyword ? keyword : "inherit");
     if (strcmp(name, "stop-color") == 0 &&
         (g_str_has_prefix(value, "ok") || g_str_has_prefix(value, "lab(") ||
          g_str_has_prefix(value, "lch(")))
@@ -445,12 +447,15 @@ static void compute_attributes(Cascade *c, xmlNode *node, const Style *style)
         const char *name = (const char *)a->name;
         const FlCssProperty *property = fl_css_property(name);
         if (!property || property->kind > FL_CSS_GEOMETRY || property->kind == FL_CSS_TEXT ||
-            (property->kind == FL_CSS_PAINT && (*text == '#' || fl_is_animation(node))))
+            (property->kind == FL_CSS_PAINT &&
+             ((*text == '#' && !strchr(text, '(')) || fl_is_animation(node))))
             continue; // fill="freeze"
         g_autofree char *trimmed =
             g_strstrip(strstr(text, "/*") ? fl_css_without_comments(text) : g_strdup(text));
         if (!fl_css_is_valid(property, trimmed)) {
             warn_of_value(c, property, trimmed);
+            if (property->kind == FL_CSS_PAINT) // "#c00 icc-color(x)", which browsers leave out
+                fl_set_attribute(node, name, NULL);
             continue; // librsvg decides
         }
         g_autofree char *value = compute(c, name, property, trimmed, style);
@@ -517,7 +522,8 @@ static char *own_value(Cascade *c, const xmlNode *node, GArray *values, const ch
 {
     const Value *v = find_value(values, name);
     char *written = v ? compute(c, v->name, v->property, v->text, style) : fl_property(node, name);
-    if (written && (strcmp(written, "inherit") == 0 || strcmp(written, "currentcolor") == 0))
+    if (written &&
+        (strcmp(written, "inherit") == 0 || g_ascii_strcasecmp(written, "currentcolor") == 0))
         g_clear_pointer(&written, g_free);
     return written;
 }
@@ -538,13 +544,16 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     set_variables(&style, values);
     if (fl_is(node, "svg"))
         enter_viewport(&style, node);
-    if (animate(c, node, values, &style, owned))
+    g_autofree char *still = own_value(c, node, values, "color", &style), *colour = NULL;
+    style.colour = still ? still : style.colour;
+    if (animate(c, node, values, &style, owned)) {
         set_variables(&style, values);
+        colour = own_value(c, node, values, "color", &style);
+        style.colour = colour ? colour : style.colour;
+    }
     g_autofree char *font_size = own_value(c, node, values, "font-size", &style);
     if (font_size)
         set_font_size(&style, font_size, fl_is_root(node));
-    g_autofree char *colour = own_value(c, node, values, "color", &style);
-    style.colour = colour ? colour : style.colour;
     GString *text = g_string_new(NULL);
     compute_attributes(c, node, &style);
     for (guint i = 0; i < values->len; i++)

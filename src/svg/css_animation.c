@@ -190,9 +190,11 @@ static char *between_paths(const char *from, const char *to, double q)
     return g_strdup_printf("path(\"%s\")", data ? data : q < .5 ? a : b);
 }
 
-/** A value with its variables put in; to be freed. */
+/** A value with its variables put in, or the colour that it stands for; to be freed. */
 static char *substituted(const char *value, const FlCssContext *context)
 {
+    if (g_ascii_strcasecmp(value, "currentcolor") == 0)
+        return g_strdup(context->variable(context->data, value));
     char *text =
         strstr(value, "var(") ? fl_css_substitute(value, context->variable, context->data) : NULL;
     return text ? g_strstrip(text) : g_strdup(value);

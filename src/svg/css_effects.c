@@ -1,6 +1,7 @@
 #include "svg/css_effects.h"
 
 #include "svg/css_colour.h"
+#include "svg/inherited.h"
 #include "svg/path_data.h"
 #include <math.h>
 #include <string.h>
@@ -370,7 +371,7 @@ static const char *apply_path(GHashTable *effects, xmlNode *node)
     }
     const bool is_path = fl_css_call(value, &name, &arguments) && strcmp(name, "path") == 0;
     g_autofree char *d = is_path ? fl_css_string_or_url(arguments) : NULL;
-    if (!d)
+    if (!d || fl_path_data_error(d))
         return "d";
     fl_set_attribute(node, "d", d);
     return NULL;
@@ -483,24 +484,24 @@ static void keep_stroke(xmlNode *node, const FlAffine *around, const FlAffine *a
     set_matrix(node, &back);
 }
 
-static void visit_strokes(xmlNode *node, const FlAffine *around, const FlCssUnits *units)
+static void visit_strokes(FlInheritance *pages, xmlNode *node, const FlCssUnits *units)
 {
-    FlAffine own = FL_AFFINE_NONE;
-    const char *transform = fl_attribute(node, "transform");
     g_autofree char *vector = fl_property(node, "vector-effect");
-    if (transform)
-        fl_affine_parse(transform, &own);
-    const FlAffine all = fl_affine_multiply(around, &own);
-    if (vector && strcmp(vector, "non-scaling-stroke") == 0)
-        keep_stroke(node, around, &all, units);
+    if (vector && strcmp(vector, "non-scaling-stroke") == 0 && !fl_is_root(node)) {
+        const FlInherited around = fl_inherited_by(pages, node->parent);
+        const FlAffine own = fl_affine_of(node), all = fl_affine_multiply(&around.ctm, &own);
+        FlCssUnits inner = *units;
+        inner.width = around.width, inner.height = around.height;
+        keep_stroke(node, &around.ctm, &all, &inner);
+    }
     FL_EACH_ELEMENT (child, node)
-        visit_strokes(child, &all, units);
+        visit_strokes(pages, child, units);
 }
 
 void fl_css_keep_strokes(xmlNode *root, const FlCssUnits *units)
 {
-    const double fit = MIN(units->page_width / units->width, units->page_height / units->height);
-    const FlAffine page = {fit, 0, 0, fit, 0, 0};
-    if (isfinite(fit) && fit > 0)
-        visit_strokes(root, &page, units);
+    FlInheritance pages =
+        fl_inheritance_of(96, (FlPageSize){units->page_width, units->page_height});
+    visit_strokes(&pages, root, units);
+    fl_inheritance_clear(&pages);
 }

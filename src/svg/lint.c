@@ -184,6 +184,8 @@ static void check_text(const Lint *lint, const xmlNode *node)
         warn(lint, node, "places and turns of single letters are left out");
     if (fl_attribute(node, "textLength"))
         warn(lint, node, "textLength is left out: the text has its own width");
+    if (xmlHasProp((xmlNode *)node, (xmlChar *)"word-spacing"))
+        warn(lint, node, "word-spacing is left out");
 }
 
 static bool has_value(const xmlNode *node, const char *property, const char *wanted)
@@ -222,6 +224,8 @@ static void lint_node(const Lint *lint, xmlNode *node)
     check_values(lint, node);
     if (node->ns && strcmp((const char *)node->name, "include") == 0)
         warn(lint, node, "the file of <include> is drawn without the styles of the drawing");
+    if (fl_is(node, "script"))
+        warn(lint, node, "its script is not run: the drawing is shown as it was written");
     if (fl_is(node, "foreignObject"))
         check_foreign(lint, node);
     check_references(lint, node);

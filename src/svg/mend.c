@@ -5,6 +5,7 @@
 #include "svg/document.h"
 #include "svg/geometry.h"
 #include "svg/normalise.h"
+#include "svg/transform.h"
 #include <string.h>
 
 #define MOST_CLIPS 16 // of clip paths that clip each other
@@ -150,6 +151,25 @@ static void mend_numbers(xmlNode *step)
         if (s && (!*s || s[strspn(s, "0123456789+-.eE ,\t\r\n")] || (signless && *s == '-')))
             fl_set_attribute(step, names[i], NULL);
     }
+}
+
+/** Moves what <feImage> shows to the corner of the step's region, where browsers show it. */
+static void mend_image(xmlNode *step, int number)
+{
+    g_autofree char *href = fl_href(step);
+    const FlCssUnits units = {.font_size = 16, .root_font_size = 16};
+    const double x = fl_length_of(step, "x", &units, 0), y = fl_length_of(step, "y", &units, 0);
+    if (!href || *href != '#' || (x == 0 && y == 0))
+        return;
+    const FlAffine move = {1, 0, 0, 1, x, y};
+    g_autofree char *id = g_strdup_printf("fl-image-%d", number);
+    g_autofree char *name = g_strconcat("#", id, NULL), *text = fl_affine_text(&move);
+    xmlNode *defs = xmlNewChild(step->parent->parent, step->ns, (const xmlChar *)"defs", NULL);
+    xmlNode *group = xmlNewChild(defs, step->ns, (const xmlChar *)"g", NULL);
+    fl_set_attribute(group, "id", id);
+    fl_set_attribute(xmlNewChild(group, step->ns, (const xmlChar *)"use", NULL), "href", href);
+    fl_set_attribute(group->children, "transform", text);
+    fl_set_attribute(step, "href", name);
 }
 
 /* ---- gradients without length ---------------------------------------------------------------- */
@@ -347,6 +367,8 @@ static void mend(Mend *m, xmlNode *node)
         mend_numbers(node);
     if (fl_is(node, "feDropShadow"))
         mend_shadow(node, m->n_made++);
+    else if (fl_is(node, "feImage"))
+        mend_image(node, m->n_made++);
     else if (fl_is(node, "filter"))
         mend_inputs(node);
     else if (fl_is_one_of(node, "linearGradient radialGradient"))
@@ -373,9 +395,6 @@ void fl_document_mend(xmlDoc *doc, const char *path, int number, FlWarnings *war
 {
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
     Mend m = {.ids = ids};
-    if (!fl_document_mend_turned(doc, ids))
-        fl_warnings_add(warnings, path, number, NULL,
-                        "too many turned shapes have a blur or a pattern; those of the rest may "
-                        "look wrong");
+    fl_document_mend_turned(doc, ids, path, number, warnings);
     mend(&m, xmlDocGetRootElement(doc));
 }

@@ -34,9 +34,10 @@ void fl_document_mend(xmlDoc *doc, const char *path, int number, FlWarnings *war
 
 #define FL_NO_BACKGROUND "fl-no-background"
 
-/** A part of it, for shapes that are turned: round blurs, and paints in units of their box.
- * Returns: false if their filters and patterns became too many, and the rest stays as it is. */
-bool fl_document_mend_turned(xmlDoc *doc, GHashTable *ids);
+/** A part of it, for shapes that are turned: round blurs, and paints in units of their box. Warns
+ * of filters that are not turned, and if filters and patterns became too many. */
+void fl_document_mend_turned(xmlDoc *doc, GHashTable *ids, const char *path, int number,
+                             FlWarnings *warnings);
 
 /* ---- the fonts of its text ------------------------------------------------------------------- */
 

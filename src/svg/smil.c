@@ -49,6 +49,20 @@ static char **values_of(const FlAnimation *a, const char *base, bool *adds)
     return list;
 }
 
+/** The colour or the inherited value that a word in an animation stands for; takes `value`. */
+static char *resolve_word(const FlAnimation *a, char *value)
+{
+    const bool colour = g_ascii_strcasecmp(value, "currentColor") == 0;
+    char *found = colour ? fl_inherited_property(a->target, "color")
+                  : strcmp(value, "inherit") == 0
+                      ? fl_inherited_property(a->target->parent, a->attribute)
+                      : NULL;
+    if (!found)
+        return value;
+    g_free(value);
+    return found;
+}
+
 /** The share of each value in a round: keyTimes, by distance, or even; NULL, as in a browser, if
  * keyTimes do not fit the values. To be freed. */
 static double *key_times(const FlAnimation *a, char **values, int n, bool paced, bool discrete)
@@ -134,6 +148,8 @@ static char *value_at(const FlAnimation *a, const char *base, double seconds, bo
     const int n = (int)g_strv_length(values);
     if (n == 0)
         return NULL;
+    for (int i = 0; i < n; i++)
+        values[i] = resolve_word(a, values[i]);
     const bool discrete = strcmp(mode, "discrete") == 0 || is_discrete(a->attribute);
     mode = discrete ? "discrete" : mode;
     g_autofree double *times = key_times(a, values, n, strcmp(mode, "paced") == 0, discrete);

@@ -11,6 +11,7 @@ typedef struct Turned {
     FlCssUnits units;
     int n_made;   // names
     int n_copied; // elements in filters and patterns
+    bool warped;  // a filter was seen that is not turned with its shape
 } Turned;
 
 static int count_elements(const xmlNode *node)
@@ -21,7 +22,8 @@ static int count_elements(const xmlNode *node)
     return n;
 }
 
-/* ---- blurs ----------------------------------------------------------------------------------- */
+/* ---- filters
+ * ------------------------------------------------------------------------------------- */
 
 /** Gives a blur the two deviations that the map m, as librsvg applies it, makes equal. */
 static void turn_blur(xmlNode *step, const FlAffine *m)
@@ -45,6 +47,17 @@ static void turn_blur(xmlNode *step, const FlAffine *m)
     }
 }
 
+/** Returns: true if librsvg draws a step upright where a browser turns it with its shape. */
+static bool is_upright(const xmlNode *step)
+{
+    const xmlNode *next = xmlNextElementSibling((xmlNode *)step);
+    if (fl_is(step, "feFlood") && next && fl_is(next, "feComposite"))
+        return false; // which cuts it
+    return xmlHasProp((xmlNode *)step, (xmlChar *)"width") ||
+           fl_is_one_of(step, "feTurbulence feTile feImage feDisplacementMap feFlood "
+                              "feConvolveMatrix");
+}
+
 /** librsvg turns the deviations of a blur across and down like a way: at 45 degrees it blurs in one
  * direction only. What is turned gets a filter of its own, whose blurs come out round. */
 static void mend_blur(Turned *t, xmlNode *node, const FlAffine *map)
@@ -52,10 +65,13 @@ static void mend_blur(Turned *t, xmlNode *node, const FlAffine *map)
     g_autofree char *value = fl_property(node, "filter");
     xmlNode *filter = fl_referred_by(value, "filter", t->ids);
     g_autofree char *units = filter ? fl_property(filter, "primitiveUnits") : NULL;
+    const bool in_box = units && strcmp(units, "objectBoundingBox") == 0;
     bool blurs = false;
-    FL_EACH_ELEMENT (step, filter)
+    FL_EACH_ELEMENT (step, filter) {
         blurs |= fl_is_one_of(step, "feGaussianBlur feDropShadow");
-    if (!filter || !blurs || (units && strcmp(units, "objectBoundingBox") == 0))
+        t->warped |= in_box || is_upright(step);
+    }
+    if (!blurs || in_box)
         return;
     g_autofree char *id = g_strdup_printf("fl-turned-%d", t->n_made++);
     xmlNode *turned = xmlAddNextSibling(filter, xmlDocCopyNode(filter, filter->doc, 1));
@@ -192,7 +208,8 @@ static void visit(Turned *t, xmlNode *node, const FlAffine *around)
         visit(t, child, &map);
 }
 
-bool fl_document_mend_turned(xmlDoc *doc, GHashTable *ids)
+void fl_document_mend_turned(xmlDoc *doc, GHashTable *ids, const char *path, int number,
+                             FlWarnings *warnings)
 {
     const FlAffine none = FL_AFFINE_NONE;
     xmlNode *root = xmlDocGetRootElement(doc);
@@ -200,5 +217,12 @@ bool fl_document_mend_turned(xmlDoc *doc, GHashTable *ids)
     fl_view_box(root, box);
     Turned t = {.ids = ids, .units = {.width = box[2], .height = box[3]}};
     visit(&t, root, &none);
-    return t.n_copied < MOST_COPIED;
+    if (t.n_copied >= MOST_COPIED)
+        fl_warnings_add(warnings, path, number, NULL,
+                        "too many turned shapes have a blur or a pattern; those of the rest may "
+                        "look wrong");
+    if (t.warped)
+        fl_warnings_add(
+            warnings, path, number, NULL,
+            "filter: its texture or region is drawn upright, not turned with its shape");
 }
