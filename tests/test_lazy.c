@@ -177,6 +177,27 @@ static void a_trimmed_cut_out_paints_nothing_far_outside(void)
     g_assert_cmpfloat(sum / n, <, .01);
 }
 
+/* The least alpha amid a line of 3 px that moves up and down, but for its ends. */
+static void a_thin_line_is_whole(void)
+{
+    g_auto(Film) film;
+    film_init(&film, cut_out(false), "lazyfluids-steady", "1");
+    int least = 255;
+    for (int frame = 0; frame < 4; frame++) {
+        const double middle = 35.5 + frame % 2;
+        for (int p = 0; p < PIXELS; p++) {
+            const double along = 28 - fabs(p % SIDE - 35.5), across = 1.5 - fabs(p / SIDE - middle);
+            film.guides.distance[p] = (float)MIN(along, across);
+            film.guides.mask[p] = (uint8_t)lrint(255 * CLAMP(MIN(along, across) + .5, 0, 1));
+        }
+        paint(&film, 1);
+        for (int x = 12; x < SIDE - 12; x++)
+            least = MIN(least, film.alpha[(int)middle * SIDE + x]);
+    }
+    g_test_message("least alpha of a thin line: %d", least);
+    g_assert_cmpint(least, >, 150);
+}
+
 /* The standard deviation of green, inside. */
 static double spread_of(const uint8_t *rgb, const uint8_t *mask, int pixels)
 {
@@ -553,6 +574,7 @@ int main(int argc, char **argv)
                     below_1_the_border_is_matched_freely);
     g_test_add_func("/lazy/a-cut-out-has-the-alpha-of-its-exemplar-and-no-paper-in-its-colours",
                     a_cut_out_has_the_alpha_of_its_exemplar_and_no_paper_in_its_colours);
+    g_test_add_func("/lazy/a-thin-line-is-whole", a_thin_line_is_whole);
     g_test_add_func("/lazy/a-trimmed-cut-out-paints-nothing-far-outside",
                     a_trimmed_cut_out_paints_nothing_far_outside);
     g_test_add_func("/lazy/paint-turns-with-the-drawing", paint_turns_with_the_drawing);

@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/rng.h"
+#include "guides/local_width.h"
 #include "lazy/fluid_exemplar.h"
 #include "lazy/lazy_state.h"
 #include "lazy/retrieve.h"
@@ -16,6 +17,7 @@
 #define SIGMA_LEAST 1.5 // px, of the style's own border
 #define SIGMA_MOST 6
 #define OUTER 1.28f // sigmas from the contour out to l
+#define ROOM 2      // sigmas of half a width that has a boundary and an interior
 
 /* One level of the target. Coarser ones go before finer ones are made but for their planes. */
 typedef struct Level {
@@ -40,6 +42,7 @@ struct FlLazy {
                                 // inspected
     FlNnf warm;                 // likewise: the carried field; empty in a first frame
     float *motion;              // likewise: 2 per pixel; NULL if there is no motion
+    uint16_t *half_width;       // likewise: fl_local_width(), up to ROOM
     bool shows;                 // the frame in hand is inspected when it is painted
     bool wants_terms;           // in the statistics
 };
@@ -89,6 +92,7 @@ static void clear_frame(FlLazy *lazy)
         level_clear(&lazy->level[l]);
     fl_nnf_clear(&lazy->warm);
     g_clear_pointer(&lazy->motion, free);
+    g_clear_pointer(&lazy->half_width, free);
 }
 
 void fl_lazy_free(FlLazy *lazy)
@@ -131,7 +135,26 @@ static bool find_motion(FlLazy *lazy, const FlGuides *guides, GError **error)
            fl_lazy_motion(guides, reach, lazy->motion, error);
 }
 
-static bool blur_mask(FlLazy *lazy, const uint8_t *mask, GError **error)
+/* Half the width of the part around a pixel, as a share of what leaves room for all of a boundary;
+ * at most 1. */
+static float room(const FlLazy *lazy, size_t p)
+{
+    const float wide = (float)fl_width_cap(ROOM * lazy->sigma_px);
+    return lazy->half_width[p] > 0 ? (float)lazy->half_width[p] / wide : 1;
+}
+
+static bool find_thin_parts(FlLazy *lazy, const FlGuides *guides, GError **error)
+{
+    const size_t pixels = (size_t)lazy->width * (size_t)lazy->height;
+    bool narrow;
+    return (lazy->half_width =
+                fl_alloc_unset(pixels, sizeof *lazy->half_width, "local widths", error)) &&
+           fl_local_width(guides->distance, NULL, lazy->width, lazy->height, ROOM * lazy->sigma_px,
+                          lazy->half_width, &narrow, error);
+}
+
+/* The blurred mask [L15 §4.2]. */
+static bool find_edge(FlLazy *lazy, const uint8_t *mask, GError **error)
 {
     FlFluidPlanes *planes = &lazy->level[0].planes;
     const size_t pixels = (size_t)lazy->width * (size_t)lazy->height;
@@ -141,6 +164,18 @@ static bool blur_mask(FlLazy *lazy, const uint8_t *mask, GError **error)
     for (size_t p = 0; p < pixels; p++)
         planes->plane[FL_FLUID_PLANE_EDGE][p] = (float)mask[p] / 255;
     return fl_fluid_planes_blur(planes, lazy->sigma_px, error);
+}
+
+/* In thin parts, where the blurred mask is faint all over, it becomes what it would be beside a
+ * straight edge if it were blurred so little that there is an interior. */
+static void narrow_edge(const FlLazy *lazy, const float *distance)
+{
+    float *edge = lazy->level[0].planes.plane[FL_FLUID_PLANE_EDGE];
+    for (size_t p = 0; p < (size_t)lazy->width * (size_t)lazy->height; p++) {
+        const float share = room(lazy, p), sigma = share * lazy->sigma_px;
+        const float narrow = .5f + .5f * erff(distance[p] / (sigma * (float)G_SQRT2));
+        edge[p] = share < 1 ? narrow + share * (edge[p] - narrow) : edge[p];
+    }
 }
 
 /* The last output and field in the place where they are now; they go themselves. */
@@ -177,10 +212,11 @@ static bool take_guides(FlLazy *lazy, FlGuides *guides, GError **error)
     memcpy(mask, guides->mask, pixels);
     const FlRestRule rule = rest_rule(lazy);
     fl_rest_shape(guides, &rule, shape);
+    if (!find_edge(lazy, mask, error) || (lazy->last.valid && !carry_past(lazy, error)))
+        return false;
+    narrow_edge(lazy, guides->distance);
     if (guides->disposable)
         fl_guides_clear(guides);
-    if (!blur_mask(lazy, mask, error) || (lazy->last.valid && !carry_past(lazy, error)))
-        return false;
     fl_lazy_state_forget(&lazy->last);
     lazy->last.past.mask = g_steal_pointer(&mask);
     lazy->last.shape = g_steal_pointer(&shape);
@@ -525,8 +561,9 @@ static bool write_output(const FlLazy *lazy, uint8_t *rgb, uint8_t *alpha, GErro
             rgb[3 * p + c] = lazy->exemplar->cut_out
                                  ? straight(rgba + 4 * p, (int)c, lazy->exemplar->paper[c])
                                  : (uint8_t)((rgba[4 * p + c] + 128) / 257);
+        const float own = room(lazy, p), drawn = (float)lazy->last.past.mask[p];
         if (alpha)
-            alpha[p] = (uint8_t)((rgba[4 * p + 3] + 128) / 257);
+            alpha[p] = (uint8_t)(drawn + own * ((float)rgba[4 * p + 3] / 257 - drawn) + .5f);
     }
     return true;
 }
@@ -559,7 +596,8 @@ static bool paint(FlLazy *lazy, FlGuides *guides, uint8_t *rgb, uint8_t *alpha, 
         write_nothing(lazy, rgb, alpha);
         return true;
     }
-    return (holds_still(lazy, guides) ||
+    return find_thin_parts(lazy, guides, error) &&
+           (holds_still(lazy, guides) ||
             (prepare(lazy, guides, error) && run_levels(lazy, stats, error) &&
              remember(lazy, error))) &&
            write_output(lazy, rgb, alpha, error);
