@@ -63,11 +63,11 @@ static void find_passes(const FlWash *wash, const Places *at, Values values)
     static const float wide[2] = {170, 170};
     static const float cell[2] = {90, 60};
     float waver[FL_NOISE_ROW];
-    noise_at(fl_key(wash->key, KEY_PASS), at, wide, 0, 1, 1, waver);
+    noise_at(fl_key(wash->key, KEY_PASS), at, wide, 0, 3, .5f, waver);
     noise_at(fl_key(wash->key, KEY_DRY), at, cell, 0, 1, 1, values[FL_WASH_DRY]);
     for (int i = 0; i < at->n; i++) {
         const float across = wash->along[0] * at->y[i] - wash->along[1] * at->x[i];
-        values[FL_WASH_PASS][i] = across / wash->brush_px + .3f * waver[i];
+        values[FL_WASH_PASS][i] = across / wash->brush_px + .45f * waver[i];
     }
 }
 
@@ -77,9 +77,9 @@ static void find_tide(const FlWash *wash, const Places *at, float *away)
     static const float wide[2] = {210, 190}, lobes[2] = {60, 60};
     float lobe[FL_NOISE_ROW];
     noise_at(fl_key(wash->key, KEY_TIDE), at, wide, .25f, 1, 1, away);
-    noise_at(fl_key(wash->key, KEY_TIDE + 100), at, lobes, .2f, 2, .5f, lobe);
+    noise_at(fl_key(wash->key, KEY_TIDE + 100), at, lobes, .2f, 3, .6f, lobe);
     for (int i = 0; i < at->n; i++)
-        away[i] = wash->style.tide > 0 ? (away[i] + .13f * lobe[i]) / .011f : 1000;
+        away[i] = wash->style.tide > 0 ? (away[i] + .16f * lobe[i]) / .011f : 1000;
 }
 
 #define BLOOM_CELL 260 // one in this square at most
