@@ -371,9 +371,9 @@ typedef struct Animated {
 
 static Value *find_value(GArray *values, const char *name)
 {
-    for (guint i = 0; i < values->len; i++)
-        if (strcmp(g_array_index(values, Value, i).name, name) == 0)
-            return &g_array_index(values, Value, i);
+    FL_EACH (Value, v, values)
+        if (strcmp(v->name, name) == 0)
+            return v;
     return NULL;
 }
 
@@ -535,12 +535,8 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     g_autoptr(GArray) values = declared_values(c, node, around->shown, own);
     g_autoptr(GHashTable) effects = NULL;
     g_autoptr(GPtrArray) owned = g_ptr_array_new_with_free_func(g_free);
-    Style style = {.around = around,
-                   .own = around->own,
-                   .units = around->units,
-                   .colour = around->colour,
-                   .context = around->context,
-                   .shown = around->shown};
+    Style style = *around;
+    style.around = around, style.variables = NULL;
     set_variables(&style, values);
     if (fl_is(node, "svg"))
         enter_viewport(&style, node);
@@ -556,9 +552,9 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
         set_font_size(&style, font_size, fl_is_root(node));
     GString *text = g_string_new(NULL);
     compute_attributes(c, node, &style);
-    for (guint i = 0; i < values->len; i++)
-        if (g_array_index(values, Value, i).property)
-            apply(c, node, &g_array_index(values, Value, i), &style, text, &effects);
+    FL_EACH (const Value, v, values)
+        if (v->property)
+            apply(c, node, v, &style, text, &effects);
     if (values->len > 0 || own->len > 0)
         fl_set_attribute(node, "style", text->str);
     g_string_free(text, TRUE);
@@ -623,15 +619,7 @@ bool fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
     g_autoptr(GHashTable) copies = fl_uses_copy(doc, path, error);
     if (!copies)
         return false;
-    Cascade c = {.path = path,
-                 .number = number,
-                 .warnings = warnings,
-                 .sheet = sheet,
-                 .rules = rules,
-                 .said = said,
-                 .seconds = seconds,
-                 .length = length,
-                 .copies = copies};
+    Cascade c = {path, number, warnings, sheet, rules, {0}, said, seconds, length, copies, 0};
     visit(&c, root,
           &(Style){
               .variables = sheet->initial, .own = sheet->own, .units = units, .colour = "black"});

@@ -50,26 +50,16 @@ static bool evaluate(const char *text, Test *test, const void *data, int depth)
 /** Compares a length or ratio of the page: "width: 500px", "min-width: 500px", "width >= 500px". */
 static bool compares(double have, const char *relation, double wanted)
 {
-    if (strcmp(relation, "min") == 0 || strcmp(relation, ">=") == 0)
-        return have >= wanted;
-    if (strcmp(relation, "max") == 0 || strcmp(relation, "<=") == 0)
-        return have <= wanted;
-    if (strcmp(relation, ">") == 0)
-        return have > wanted;
-    if (strcmp(relation, "<") == 0)
-        return have < wanted;
-    return have == wanted;
+    const bool more = *relation == '>' || strcmp(relation, "min") == 0;
+    const bool less = *relation == '<' || strcmp(relation, "max") == 0;
+    const bool unequal = strcmp(relation, ">") == 0 || strcmp(relation, "<") == 0;
+    return (more && have > wanted) || (less && have < wanted) || (!unequal && have == wanted);
 }
 
 static bool is_size(const FlCssPage *page, const char *name, const char *relation,
                     const char *value)
 {
-    const FlCssUnits units = {.width = page->width,
-                              .height = page->height,
-                              .font_size = 16,
-                              .root_font_size = 16,
-                              .page_width = page->width,
-                              .page_height = page->height};
+    const FlCssUnits units = {page->width, page->height, 16, 16, page->width, page->height};
     double wanted = 0;
     const bool width = strcmp(name, "width") == 0 || strcmp(name, "device-width") == 0;
     const bool height = strcmp(name, "height") == 0 || strcmp(name, "device-height") == 0;

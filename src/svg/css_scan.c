@@ -165,8 +165,7 @@ char *fl_css_without_comments(const char *css)
 char **fl_css_split(const char *text, char separator)
 {
     GPtrArray *parts = g_ptr_array_new();
-    const char stops[] = {separator == ' ' ? ' ' : separator, separator == ' ' ? '\t' : '\0',
-                          separator == ' ' ? '\n' : '\0', separator == ' ' ? '\r' : '\0', '\0'};
+    const char one[] = {separator, '\0'}, *stops = separator == ' ' ? FL_CSS_SPACE : one;
     for (const char *s = fl_css_space(text); *s;) {
         const char *end = fl_css_find_past(s, stops);
         char *part = g_strstrip(g_strndup(s, (gsize)(end - s)));
@@ -205,4 +204,12 @@ char *fl_css_string_or_url(const char *text)
         return inside ? fl_css_unescape(inside, strlen(inside)) : NULL;
     const char *end = skip_string(s);
     return end - s < 2 ? NULL : fl_css_unescape(s + 1, (size_t)(end - s) - 2);
+}
+
+char *fl_css_take_url(const char **s)
+{
+    const char *open = strchr(*s, '('), *close = fl_css_find(open ? open + 1 : *s, ")");
+    g_autofree char *call = g_strdup_printf("%.*s)", (int)(close - *s), *s);
+    *s = *close ? close + 1 : close;
+    return fl_css_string_or_url(call);
 }

@@ -57,4 +57,7 @@ bool fl_css_call(const char *text, char **name, char **arguments);
 /** The text of a string, url("…") or url(…); NULL if `text` is neither. To be freed. */
 char *fl_css_string_or_url(const char *text);
 
+/** Likewise of the url(…) that *s begins with, which is skipped. */
+char *fl_css_take_url(const char **s);
+
 #endif

@@ -65,12 +65,9 @@ static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *u
 static void add_children(Bounds *bounds, const xmlNode *node, const FlCssUnits *units,
                          const FlAffine *map, int depth)
 {
-    const FlAffine place = {1,
-                            0,
-                            0,
-                            1,
-                            fl_length_of(node, "x", units, units->width),
-                            fl_length_of(node, "y", units, units->height)};
+    const double x = fl_length_of(node, "x", units, units->width);
+    const double y = fl_length_of(node, "y", units, units->height);
+    const FlAffine place = {1, 0, 0, 1, x, y};
     const FlAffine inner = fl_is(node, "svg") ? fl_affine_multiply(map, &place) : *map;
     FL_EACH_ELEMENT (child, node) {
         const FlAffine own = fl_affine_of(child), all = fl_affine_multiply(&inner, &own);

@@ -10,11 +10,7 @@
  */
 static bool length_of(const FlInheritance *inheritance, const char *text, double whole, double *px)
 {
-    const FlCssUnits units = {.font_size = NAN,
-                              .root_font_size = NAN,
-                              .page_width = NAN,
-                              .page_height = NAN,
-                              .dpi = inheritance->dpi};
+    const FlCssUnits units = {0, 0, NAN, NAN, NAN, NAN, inheritance->dpi};
     return fl_css_number(text, &units, whole, px);
 }
 
@@ -41,12 +37,9 @@ static FlAffine fit_box(const double box[4], double width, double height, const 
         ax = ratio && strstr(ratio, "xMin") ? 0 : ratio && strstr(ratio, "xMax") ? 1 : 0.5;
         ay = ratio && strstr(ratio, "YMin") ? 0 : ratio && strstr(ratio, "YMax") ? 1 : 0.5;
     }
-    return (FlAffine){sx,
-                      0,
-                      0,
-                      sy,
-                      ax * (width - sx * box[2]) - sx * box[0],
-                      ay * (height - sy * box[3]) - sy * box[1]};
+    const double x = ax * (width - sx * box[2]) - sx * box[0];
+    const double y = ay * (height - sy * box[3]) - sy * box[1];
+    return (FlAffine){sx, 0, 0, sy, x, y};
 }
 
 /** An <svg>: its place, its viewport and its viewBox. */

@@ -39,18 +39,16 @@ static char *mend(const Lint *lint, const char *text)
     bool mended = false;
     for (const char *url; (url = strstr(text, "url(")); text = url) {
         g_string_append_len(out, text, url - text);
-        const char *end = fl_css_find(url + 4, ")");
-        g_autofree char *call = g_strdup_printf("%.*s)", (int)(end - url), url);
-        g_autofree char *reference = fl_css_string_or_url(call);
+        const char *begin = url;
+        g_autofree char *reference = fl_css_take_url(&url);
         g_autofree char *id = reference ? target_of(lint, reference) : NULL;
         const bool known = id && g_hash_table_contains(lint->ids, id);
         if (known && strcmp(reference + (*reference == '#'), id) != 0) {
             g_string_append_printf(out, "url(\"#%s\")", id);
             mended = true;
         } else {
-            g_string_append(out, call);
+            g_string_append_len(out, begin, url - begin);
         }
-        url = *end ? end + 1 : end;
     }
     g_string_append(out, text);
     return g_string_free(out, !mended);
@@ -72,15 +70,13 @@ static void check_target(const Lint *lint, const xmlNode *node, const char *name
     const char *url = strstr(value, "url(");
     if (!url)
         return;
-    const char *end = fl_css_find(url + 4, ")");
-    g_autofree char *call = g_strdup_printf("%.*s)", (int)(end - url), url);
-    g_autofree char *reference = fl_css_string_or_url(call);
+    g_autofree char *reference = fl_css_take_url(&url);
     if (reference && *reference == '#' && g_hash_table_contains(lint->ids, reference + 1))
         return;
     if (is_in_file(lint, reference))
         return;
     const bool paint = strcmp(name, "fill") == 0 || strcmp(name, "stroke") == 0;
-    const bool fallback = paint && *end && end[1];
+    const bool fallback = paint && *url;
     g_autofree char *text = g_strdup_printf("%s refers to “%s”, which is not in the file: %s", name,
                                             reference ? reference : "",
                                             fallback ? "the colour after it is drawn"

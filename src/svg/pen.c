@@ -218,12 +218,9 @@ void fl_pen_rect(FlPen *pen, double x, double y, double w, double h, const doubl
     fl_pen_move(pen, (FlPoint){x + rx[0], y});
     for (int k = 0; k < 4; k++) {
         const int i = (k + 1) % 4; // from the top right on
-        const FlAffine m = {rx[i],
-                            0,
-                            0,
-                            ry[i],
-                            k < 2 ? x + w - rx[i] : x + rx[i],
-                            k % 3 ? y + h - ry[i] : y + ry[i]};
+        const double cx = k < 2 ? x + w - rx[i] : x + rx[i];
+        const double cy = k % 3 ? y + h - ry[i] : y + ry[i];
+        const FlAffine m = {rx[i], 0, 0, ry[i], cx, cy};
         fl_pen_line(pen, fl_affine_apply(&m, corner[k]));
         quarter_to(pen, &m, corner[k], corner[i]);
     }

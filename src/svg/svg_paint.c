@@ -55,14 +55,6 @@ typedef struct Source {
     char *key;
 } Source;
 
-/** The end of the url() that a text begins with. */
-static const char *end_of_url(const char *text)
-{
-    const char *open = strchr(text, '(');
-    const char *end = fl_css_find(open ? open + 1 : text, ")");
-    return *end ? end + 1 : end;
-}
-
 /** The sum over a gradient up to a stop. */
 typedef struct Ramp {
     GString *key;
@@ -136,11 +128,10 @@ static const xmlNode *referred_by(const Reader *r, const xmlNode *node)
     return element_of(r, href);
 }
 
-/** The element of a text that begins with url(); NULL without one. */
-static const xmlNode *referred_in(const Reader *r, const char *text)
+/** The element of the url() that *text begins with, which is skipped; NULL without one. */
+static const xmlNode *take_reference(const Reader *r, const char **text)
 {
-    g_autofree char *url = g_strndup(text, (gsize)(end_of_url(text) - text));
-    g_autofree char *target = fl_css_string_or_url(url);
+    g_autofree char *target = fl_css_take_url(text);
     return element_of(r, target);
 }
 
@@ -239,9 +230,10 @@ static bool read_paint(Reader *r, const char *text, const FlInherited *s, double
                        Source *source)
 {
     if (g_str_has_prefix(text, "url(")) {
-        const char *rest = fl_css_space(end_of_url(text));
-        return read_server(r, referred_in(r, text), opacity, source) ||
-               (*rest && read_paint(r, rest, s, opacity, source));
+        const xmlNode *server = take_reference(r, &text);
+        text = fl_css_space(text);
+        return read_server(r, server, opacity, source) ||
+               (*text && read_paint(r, text, s, opacity, source));
     }
     *source = (Source){0};
     if (!read_colour(text, s, opacity, source->rgba))
@@ -369,7 +361,8 @@ static bool has_letters(const xmlNode *node)
 static void add_markers(Reader *r, const FlInherited *s, const Around *around)
 {
     for (int k = 0; k < FL_MARKERS; k++) {
-        const xmlNode *marker = referred_in(r, s->marker[k]);
+        const char *text = s->marker[k];
+        const xmlNode *marker = take_reference(r, &text);
         if (!marker || !fl_is(marker, "marker"))
             continue;
         const FlInherited own = fl_inherited_by(&r->svg->inheritance, marker);

@@ -24,21 +24,13 @@ static bool is_bool(const bool *value)
 
 /* ---- requests -------------------------------------------------------------------------------- */
 
-/** The fields of a hand that hold no pointer. */
-typedef struct PlainHand {
-    uint64_t seed;
-    float page;
-    int tooth;
-} PlainHand;
-
 static void put_hand(GByteArray *out, const FlRequest *r)
 {
     const FlHand *hand = r->hand;
-    const PlainHand plain = {hand->seed, hand->page, hand->tooth.height != NULL};
-    fl_put(out, &plain, sizeof plain);
+    fl_put(out, hand, sizeof *hand);
     fl_put(out, hand->of_region, (size_t)r->n_regions * sizeof *hand->of_region);
     fl_put(out, r->key, (size_t)r->n_regions * sizeof *r->key);
-    for (int y = 0; plain.tooth && y < r->height; y++)
+    for (int y = 0; hand->tooth.height && y < r->height; y++)
         fl_put(out, hand->tooth.height + (size_t)y * hand->tooth.stride, (size_t)r->width);
 }
 
@@ -65,16 +57,16 @@ static void *take_all(FlReader *reader, int n, size_t size)
 
 static void take_hand(FlReader *reader, FlRequest *r, FlHand *hand)
 {
-    PlainHand plain;
-    fl_reader_copy(reader, &plain, sizeof plain);
-    *hand = (FlHand){.seed = plain.seed, .page = plain.page};
+    fl_reader_copy(reader, hand, sizeof *hand);
+    const bool tooth = hand->tooth.height != NULL;
+    hand->of_region = NULL, hand->tooth = (FlTooth){0};
     r->hand = hand;
     FlRegionHand *of_region = take_all(reader, r->n_regions, sizeof *of_region);
     for (int i = 0; of_region && i < r->n_regions; i++)
         fl_take_check(reader, (unsigned)of_region[i].line <= FL_LINE_BRUSH);
     hand->of_region = of_region;
     r->key = take_all(reader, r->n_regions, sizeof *r->key);
-    if (plain.tooth && !reader->failed && (size_t)r->width * (size_t)r->height <= INT_MAX)
+    if (tooth && !reader->failed && (size_t)r->width * (size_t)r->height <= INT_MAX)
         hand->tooth = (FlTooth){take_all(reader, r->width * r->height, 1), (size_t)r->width};
 }
 
