@@ -190,8 +190,18 @@ static bool set_tolerance(FlRule *rule, const char *value, bool overridden, GErr
 }
 
 /* The nearest key of a region section, the match-* among them. */
+static bool is_project_key(const char *key)
+{
+    const FlOption *option = fl_option_find(FL_SCOPE_RENDER, key);
+    return strcmp(key, "include") == 0 || strcmp(key, "version") == 0 ||
+           (option && option->section == FL_SECTION_PROJECT);
+}
+
 static bool unknown_key(const char *section, const char *key, bool matches, GError **error)
 {
+    if (is_project_key(key))
+        return fl_fail(error, FL_ERROR_USAGE, "[%s] has no key “%s”; it belongs to [project]",
+                       section, key);
     g_autoptr(GPtrArray) known = g_ptr_array_new();
     for (const char *const *k = fl_region_settings_keys(); *k; k++)
         g_ptr_array_add(known, (gpointer)*k);
