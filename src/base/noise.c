@@ -2,6 +2,7 @@
 
 #include "base/curves.h"
 #include "base/rng.h"
+#include "base/row_kernels.h"
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -143,12 +144,21 @@ static void mix_slopes(const Row *restrict row, int n, float *restrict noise)
     }
 }
 
-void fl_noise_row(uint64_t key, const float *x, const float *y, int n, float *noise)
+static inline void find_row(uint64_t key, const float *x, const float *y, int n, float *noise)
 {
     Row row;
     find_cells(x, y, n, &row);
     find_slopes(key, n, &row);
     mix_slopes(&row, n, noise);
+}
+
+FL_FOR_EACH_CPU(run_row, find_row,
+                (uint64_t key, const float *x, const float *y, int n, float *noise),
+                (key, x, y, n, noise))
+
+void fl_noise_row(uint64_t key, const float *x, const float *y, int n, float *noise)
+{
+    run_row(key, x, y, n, noise);
 }
 
 void fl_noise_octaves_row(uint64_t key, const float *x, const float *y, int n, int octaves,
