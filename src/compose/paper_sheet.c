@@ -242,11 +242,11 @@ static void fill_by_means(FlPaperSheet *sheet, const FlPaperSheet *large, int n)
 
 /* A sheet whose grain is finer than its px would be another one, of noise: the sheet is made n
  * times as large and then averaged. */
-static int finer(const FlPaperSheet *sheet, float scale)
+static int finer(const FlPaperSheet *sheet, float scale, int most)
 {
     const double pixels = (double)sheet->width * sheet->height;
     int n = 1;
-    while ((float)n * scale < 1 && n < MOST_FINER && 4 * n * n * pixels <= MOST_PIXELS)
+    while ((float)n * scale < 1 && n < most && 4 * n * n * pixels <= MOST_PIXELS)
         n *= 2;
     return n;
 }
@@ -265,7 +265,7 @@ static bool fill_reduced(FlPaperSheet *sheet, const FlPaperChoice *choice, int k
 static bool make(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, float scale,
                  GError **error)
 {
-    const int n = finer(sheet, scale);
+    const int n = finer(sheet, scale, choice->rough ? 2 : MOST_FINER);
     return n > 1 ? fill_reduced(sheet, choice, kind, scale, n, error)
                  : fill_sheet(sheet, choice, kind, scale, error);
 }

@@ -14,7 +14,8 @@ typedef struct FlPaperChoice {
     double scale;              // output px per px of the sheet; 0: as the page asks for
     double relief;             // strength of its light, 0..2
     uint64_t seed;
-    int boil; // frames after which another sheet is taken; 0: never
+    int boil;   // frames after which another sheet is taken; 0: never
+    bool rough; // grain that is finer than a px may be coarser, for a draft
 } FlPaperChoice;
 
 /**

@@ -406,7 +406,8 @@ static bool make_sheet(FlFrames *frames, GError **error)
                                       shapes->paper_px * (o->paper_scale > 0 ? o->paper_scale : 1),
                                   .relief = o->paper_relief,
                                   .seed = o->paper_seed,
-                                  .boil = o->paper_boil};
+                                  .boil = o->paper_boil,
+                                  .rough = frames->small};
     const int width = shapes->width, height = shapes->height;
     const int size[] = {width, height, !o->background, choice.boil};
     FlDigest made_of = {0};
