@@ -8,6 +8,7 @@
 #include "params/region_settings.h"
 #include "style/style_folder.h"
 #include "synth/synth.h"
+#include "transport/tile.h"
 #include <string.h>
 
 /** The fate of a region that is not painted, in place of the index of its paint. */
@@ -20,6 +21,7 @@ typedef struct FlStyleInstance {
     bool reverse, halved; // halved: for a field of half the size, if there is room for its patches
     FlExemplar *exemplar;
     FlInk *ink;
+    FlTile *tile; // NULL: no engine has asked for it
     FlMedium medium;
     FlMarks marks;
     float granulation; // as of fl_granulate()

@@ -78,11 +78,6 @@ static float lazy_reach(const FlStyleInstance *style, const FlParams *params)
 /* ---- transport: the region's own ink, moved by the style's tile [KAGS19] ------------------------
  */
 
-typedef struct Transport {
-    FlTile *tile;
-    FlCarriedInk *ink;
-} Transport;
-
 /* Amounts of transport are relative to the mean, those of an ink to its median. */
 static int transport_exposure(const FlStyleInstance *style)
 {
@@ -91,46 +86,38 @@ static int transport_exposure(const FlStyleInstance *style)
 
 static void transport_close(void *state)
 {
-    Transport *transport = state;
-    fl_carried_ink_free(transport->ink);
-    fl_tile_free(transport->tile);
-    g_free(transport);
+    fl_carried_ink_free(state);
 }
 
 static void *transport_open(const FlEngineInput *input, GError **error)
 {
-    Transport *transport = g_new0(Transport, 1);
     const FlInk *ink = input->style->ink;
     FlCarriedInkInput carried = {.width = input->size.width,
                                  .height = input->size.height,
+                                 .tile = input->style->tile,
                                  .scale = input->style->enlarged,
                                  .strength = &input->settings->strength,
                                  .seed = input->seed};
     memcpy(carried.colour.paper, ink->paper, sizeof carried.colour.paper);
     for (int c = 0; c < 3; c++)
         carried.colour.density[c] = (int32_t)((int64_t)ink->density[c] * ink->mean / FL_AMOUNT_ONE);
-    carried.tile = transport->tile =
-        fl_tile_load(input->style->path, input->style->enlarged, error);
-    if (transport->tile && (transport->ink = fl_carried_ink_new(&carried, error)))
-        return transport;
-    transport_close(transport);
-    return NULL;
+    return fl_carried_ink_new(&carried, error);
 }
 
 static bool transport_frame(void *state, FlGuides *guides, const FlEnginePaint *paint,
                             GError **error)
 {
-    return fl_carried_ink_frame(((Transport *)state)->ink, guides, paint->rgb, error);
+    return fl_carried_ink_frame(state, guides, paint->rgb, error);
 }
 
 static GBytes *transport_save(void *state, GError **error)
 {
-    return fl_carried_ink_save(((Transport *)state)->ink, error);
+    return fl_carried_ink_save(state, error);
 }
 
 static bool transport_load(void *state, GBytes *bytes, GError **error)
 {
-    return fl_carried_ink_load(((Transport *)state)->ink, bytes, error);
+    return fl_carried_ink_load(state, bytes, error);
 }
 
 /* ---- the table --------------------------------------------------------------------------------
@@ -161,6 +148,7 @@ static const FlEngine engines[] = {
                               .load = lazy_load},
     [FL_ENGINE_TRANSPORT] = {.name = "transport",
                              .claims = fl_tile_exists,
+                             .rides = true,
                              .exposure = transport_exposure,
                              .open = transport_open,
                              .close = transport_close,

@@ -38,6 +38,7 @@ typedef struct FlEngine {
     float (*reach)(const FlStyleInstance *style, const FlParams *params);
     bool enlarges; // takes an exemplar of half the size of its picture
     bool plays;    // shows the recording: whether it flows and is large enough matters
+    bool rides;    // on the tile of its style
     /** Returns: the state before the first frame; NULL with an error set. */
     void *(*open)(const FlEngineInput *input, GError **error);
     void (*close)(void *state); // NULL is fine

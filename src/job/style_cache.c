@@ -32,6 +32,7 @@ static void style_instance_free(FlStyleInstance *instance)
     g_free(instance->path);
     fl_exemplar_free(instance->exemplar);
     fl_ink_free(instance->ink);
+    fl_tile_free(instance->tile);
     g_free(instance);
 }
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyleInstance, style_instance_free)
@@ -156,6 +157,7 @@ const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSet
     g_autofree char *path = fl_style_find(settings->style, error);
     if (!path)
         return NULL;
+    const FlEngine *engine = fl_engine_choose(settings->engine, path);
     FlStyleInstance *instance = NULL;
     for (guint i = 0; i < cache->instances->len && !instance; i++) {
         const FlStyleInstance *known = cache->instances->pdata[i];
@@ -168,6 +170,9 @@ const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSet
         instance = load(cache, path, settings, texture_px, error);
     if (instance)
         g_ptr_array_add(cache->instances, instance);
+    if (instance && engine->rides && !instance->tile &&
+        !(instance->tile = fl_tile_load(path, instance->enlarged, error)))
+        return NULL;
     return instance;
 }
 
