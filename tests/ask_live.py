@@ -198,7 +198,27 @@ state = pages[1].state()
 tell("what one has chosen is taken back for both", "tint" not in state["config"] and state["undo"] is None and
      state["redo"] == "tint")
 pages[1].say("step", 1)
-tell("and made again", "tint = #123456" in pages[1].state()["config"])
+state = pages[1].state()
+tell("and made again", "tint = #123456" in state["config"])
+pages[1].draft(state["generation"])
+for page, value in zip(pages, ("0.00001", "0.00002")):
+    page.say("choose", "defaults", "style-scale", value)
+while (state := pages[0].state())["config"].count("0.00002") == 0:
+    pass
+pages[0].say("paint", state["generation"], 1, 0, 0, "")
+refused = pages[0].until(lambda m: isinstance(m, dict) and "refused" in m)
+tell("of two choices that fail at once both are taken back, and it is said",
+     refused["key"] is None and "the last 2 choices were taken back" in refused["refused"])
 pages[0].connection.close()
+for k in range(300):
+    pages[1].say("choose", "defaults", "carry" if k % 2 else "tint", f"0.{k:03}" if k % 2 else f"#{k:06}")
+for k in range(300):
+    pages[1].say("step", -1)
+pages[1].say("choose", "end", "end", "")
+last = {}
+while not isinstance(message := pages[1].message(), dict) or message.get("key") != "end":
+    last = message.get("state", last) if isinstance(message, dict) else last
+tell("256 choices can be taken back, and those before them hold", last["undo"] is None and
+     "carry = 0.043\n" in last["config"] and "tint = #000042\n" in last["config"])
 pages[1].say("choose", "defaults", "tint", "")
 tell("one that is left goes on", pages[1].draft(pages[1].state()["generation"]) >= 0)

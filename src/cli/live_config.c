@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { LONGEST_VALUE = 1000 };
+enum { LONGEST_VALUE = 1000, MOST_STEPS = 256 };
 
 struct FlLiveConfig {
     const FlArgs *args;
@@ -14,6 +14,7 @@ struct FlLiveConfig {
     char *base;         // the file with the options of the command line
     char *saved;        // the file, if it was saved: base with the choices of that time
     GPtrArray *choices; // GStrv: section, key and value, in the order in which they were made
+    guint settled;      // of them, which can no longer be taken back
     guint n;            // of them, which hold; those after them were taken back
     guint kept;         // of them, which are known to be good
     char *text;         // base with the choices
@@ -274,19 +275,19 @@ void fl_live_config_keep(FlLiveConfig *config)
     config->kept = config->n;
 }
 
-bool fl_live_config_revert(FlLiveConfig *config)
+guint fl_live_config_revert(FlLiveConfig *config)
 {
-    const bool changes = config->n > config->kept;
-    if (changes)
+    const guint n = config->n - config->kept;
+    if (n > 0)
         g_ptr_array_set_size(config->choices, (int)(config->n = config->kept));
     apply_choices(config);
-    return changes;
+    return n;
 }
 
 char **fl_live_config_choice(const FlLiveConfig *config, int by)
 {
     const guint k = by < 0 ? config->n - 1 : config->n; // of no choice: the largest number
-    return k < config->choices->len ? config->choices->pdata[k] : NULL;
+    return k >= config->settled && k < config->choices->len ? config->choices->pdata[k] : NULL;
 }
 
 bool fl_live_config_step(FlLiveConfig *config, int by)
@@ -296,6 +297,21 @@ bool fl_live_config_step(FlLiveConfig *config, int by)
         config->n = by < 0 ? config->n - 1 : config->n + 1;
     apply_choices(config);
     return can;
+}
+
+/* Settles the oldest step, in place of an earlier choice of the same key. */
+static void settle(FlLiveConfig *config)
+{
+    char **step = config->choices->pdata[config->settled];
+    for (guint k = 0; k < config->settled; k++) {
+        char **part = config->choices->pdata[k];
+        if (strcmp(part[0], step[0]) == 0 && strcmp(part[1], step[1]) == 0) {
+            g_ptr_array_remove_index(config->choices, k);
+            config->settled--, config->n--, config->kept--;
+            break;
+        }
+    }
+    config->settled++;
 }
 
 /* Checks the value without the drawing. */
@@ -322,6 +338,9 @@ bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char
     g_ptr_array_add(config->choices, g_strdupv((char **)choice));
     config->kept = MIN(config->kept, config->n);
     config->n++;
+    if (config->n - config->settled > MOST_STEPS)
+        settle(config);
+    config->kept = MAX(config->kept, config->settled);
     set(&config->text, section, key, value);
     return true;
 }

@@ -18,7 +18,7 @@ bool fl_live_config_reload(FlLiveConfig *config, GError **error);
 
 /**
  * Makes a choice: the value of an option in "project", "defaults" or "region NAME"; "" removes the
- * value. Choices that were taken back are dropped. Returns: false with FL_ERROR_USAGE, which names
+ * value. Choices that were taken back are dropped, and those before the last 256 hold. Returns: false with FL_ERROR_USAGE, which names
  * the expected values.
  */
 bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char *key,
@@ -37,8 +37,8 @@ bool fl_live_config_save(FlLiveConfig *config, bool replace, GError **error);
 /** The choices so far are good ones. */
 void fl_live_config_keep(FlLiveConfig *config);
 
-/** Drops the choices since fl_live_config_keep(). Returns: true if there are any. */
-bool fl_live_config_revert(FlLiveConfig *config);
+/** Drops the choices since fl_live_config_keep(). Returns: how many. */
+guint fl_live_config_revert(FlLiveConfig *config);
 
 /** The last choice that holds, by -1, or the next one that was taken back, by 1: section, key and
  * value. Borrowed; NULL: none. */

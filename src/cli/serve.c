@@ -130,20 +130,25 @@ static void free_drop(FlLiveDrop *drop, const FlLiveDrop *others)
         fl_live_drop_free(drop);
 }
 
-/* Takes back all that was chosen or dropped since the last draft. */
+/* Takes back all that was chosen or dropped since the last draft. The words stand at the control of
+ * a lone choice; of several, any may be wrong. */
 static bool take_back(Live *live, const char *words)
 {
     const bool dropped = live->last != live->drop;
-    char **choice = dropped ? NULL : fl_live_config_choice(live->config, -1);
-    g_autofree char *refused = object_of("refused", words, choice ? choice[1] : NULL);
-    const bool chosen = fl_live_config_revert(live->config);
+    char **last = fl_live_config_choice(live->config, -1);
+    g_autofree char *key = last ? g_strdup(last[1]) : NULL;
+    const guint chosen = fl_live_config_revert(live->config);
+    g_autofree char *all =
+        g_strdup_printf("%s (the last %u choices were taken back)", words, chosen);
+    g_autofree char *refused =
+        object_of("refused", chosen > 1 ? all : words, chosen == 1 && !dropped ? key : NULL);
     free_drop(live->drop, live->last);
     live->drop = live->last;
-    if (dropped || chosen) {
+    if (dropped || chosen > 0) {
         paint_anew(live, dropped);
         say_to_all(refused, live);
     }
-    return dropped || chosen;
+    return dropped || chosen > 0;
 }
 
 /* The page of a sample that fails no longer waits for it. */
