@@ -105,6 +105,8 @@ for _ in range(6):
 browser.key("Enter")
 tell("keys choose a style, for the region alone", done(section, "style", '"07"') and
      browser.ask('[...byId("regions").rows].filter((r) => r.textContent.includes("07")).length') == 1)
+browser.ask("choose(scope(), 'style', 'nosuch')")
+tell("one that is not there is refused with its words", until(control("style", "small") + ".textContent.includes('nosuch')"))
 number = control("style-scale", "input[type=number]")
 browser.mouse(place(number))
 browser.type("0.7")
