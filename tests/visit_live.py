@@ -179,6 +179,10 @@ for k, number in enumerate(browser.ask("frames.map((f) => f.number)")):
         const a = of(file), b = of(frames[{k}].images.after);
         return a.length === b.length && a.every((v, p) => v === b[p]); }})()""")
 tell("what is refined is the command's, to the bit", same)
+tell("a folder that is dropped is its drawings", browser.ask("""(() => {
+    const file = (name) => ({ name, isFile: true, file: (take) => take(new File([""], name)) }), read = [[file("a.svg"), file("b")], [file("c.css")], []];
+    const folder = { isDirectory: true, createReader: () => ({ readEntries: (take) => take(read.shift()) }) };
+    return filesOf([{ webkitGetAsEntry: () => folder }]).then((files) => files.map((f) => f.name).join()); })()""") == "a.svg,c.css")
 wide = []
 for width in 1440, 1024, 390:
     browser.call("Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=False)

@@ -18,8 +18,8 @@ bool fl_live_config_reload(FlLiveConfig *config, GError **error);
 
 /**
  * Makes a choice: the value of an option in "project", "defaults" or "region NAME"; "" removes the
- * value. Choices that were taken back are dropped, and those before the last 256 hold. Returns: false with FL_ERROR_USAGE, which names
- * the expected values.
+ * value. Choices that were taken back are dropped, and those before the last 256 hold. Returns:
+ * false with FL_ERROR_USAGE, which names the expected values.
  */
 bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char *key,
                            const char *value, GError **error);
