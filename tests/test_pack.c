@@ -1,7 +1,6 @@
 /* Packed bytes: they come back, and what is not whole is known. */
 #include "base/compress.h"
 #include "base/rng.h"
-#include "compose/painted_region.h"
 #include <glib.h>
 #include <string.h>
 
@@ -64,40 +63,6 @@ static void spans_of_other_sizes_are_refused(void)
     g_assert_false(unpacks(bytes, used, ONE, THREE + 1));
 }
 
-/** A bare sheet with some noise on it, and alpha behind it. */
-static void fill_picture(FlPaintedRegion *painted)
-{
-    const size_t pixels = fl_rect_pixels(painted->rect);
-    memset(painted->painted, 240, 3 * pixels);
-    for (size_t i = 0; i < 900; i++)
-        painted->painted[3 * pixels / 2 + i] = (uint8_t)fl_key(2, i);
-    memset(painted->alpha, 200, pixels);
-}
-
-static void a_picture_waits_packed(void)
-{
-    g_autoptr(GError) error = NULL;
-    FlPaintedRegion painted = {.rect = {3, 4, 100, 80}, .reach_px = 1};
-    g_assert_true(fl_painted_open(&painted, &error));
-    fill_picture(&painted);
-    const size_t bytes = fl_painted_bytes(&painted);
-    g_autofree uint8_t *picture = g_memdup2(painted.painted, bytes);
-    g_assert_true(fl_painted_pack(&painted, &error));
-    g_assert_null(painted.painted);
-    g_assert_null(painted.alpha);
-    g_assert_cmpint(g_bytes_get_size(painted.packed), <, 2000);
-    g_auto(FlPaintedReader) look = {0};
-    g_assert_true(fl_painted_read(&painted, &look, &error));
-    g_assert_true(memcmp(look.region.painted, picture, bytes) == 0);
-    g_assert_true(look.region.alpha == look.region.painted + 3 * 100 * 80);
-    g_assert_true(fl_painted_pack(&painted, &error)); // it is already
-    g_assert_true(fl_painted_open(&painted, &error));
-    g_assert_null(painted.packed);
-    g_assert_true(memcmp(painted.painted, picture, bytes) == 0);
-    g_assert_no_error(error);
-    fl_painted_clear(&painted);
-}
-
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -105,6 +70,5 @@ int main(int argc, char **argv)
     CASE(spans_come_back_as_they_were);
     CASE(bytes_cut_short_or_too_many_are_refused);
     CASE(spans_of_other_sizes_are_refused);
-    CASE(a_picture_waits_packed);
     return g_test_run();
 }

@@ -33,11 +33,10 @@ static bool find_exposure(const FlCover *cover, const FlPaintedRegion *painted, 
 {
     if ((*exposure = painted->exposure) > 0 || painted->from == FL_FROM_NOWHERE)
         return true;
-    g_auto(FlPaintedReader) look = {0};
     g_autofree uint8_t *mask = what_counts(cover, painted, error);
-    if (!mask || !fl_painted_read(painted, &look, error))
+    if (!mask)
         return false;
-    *exposure = fl_ink_exposure(painted->style->ink, look.region.painted, mask, painted->rect.width,
+    *exposure = fl_ink_exposure(painted->style->ink, painted->painted, mask, painted->rect.width,
                                 painted->rect.height);
     return true;
 }

@@ -364,16 +364,14 @@ static void mix_in(FlLayer *layer, const FlLayer *other, float share)
 static bool add_next_style(FlLayer *layer, const FlLayerSources *sources, int r, int p,
                            GError **error)
 {
-    g_auto(FlPaintedReader) look = {0};
+    const FlPaintedRegion *next = sources->input->painted[p + 1];
     FlLayer other = *layer;
     other.knockout = NULL;
-    if (!fl_painted_read(sources->input->painted[p + 1], &look, error) ||
-        !(other.rgba = fl_alloc_scratch(4 * fl_rect_pixels(layer->area.box), 1, "a layer", error)))
+    if (!(other.rgba = fl_alloc_scratch(4 * fl_rect_pixels(layer->area.box), 1, "a layer", error)))
         return false;
-    const bool done =
-        paint_layer(&other, sources, r, &look.region, sources->exposures[p + 1], error);
+    const bool done = paint_layer(&other, sources, r, next, sources->exposures[p + 1], error);
     if (done)
-        mix_in(layer, &other, look.region.share);
+        mix_in(layer, &other, next->share);
     free(other.rgba);
     free(other.knockout);
     return done;
@@ -383,10 +381,7 @@ bool fl_layer_paint(FlLayer *layer, const FlLayerSources *sources, int r, GError
 {
     const FlDraw *draw = &sources->cover->draws->draw[r];
     const int p = first_style(sources->input, draw->region);
-    g_auto(FlPaintedReader) look = {0};
-    const FlPaintedRegion *painted = p >= 0 ? &look.region : NULL;
-    if (painted && !fl_painted_read(sources->input->painted[p], &look, error))
-        return false;
+    const FlPaintedRegion *painted = p >= 0 ? sources->input->painted[p] : NULL;
     const bool cut_out = painted && is_cut_out(painted);
     if ((cut_out && !reach_out(layer, sources, draw, painted, error)) ||
         !(layer->rgba = fl_alloc_scratch(4 * fl_rect_pixels(layer->area.box), 1, "a layer", error)))

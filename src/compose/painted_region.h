@@ -59,10 +59,9 @@ typedef struct FlPaintedRegion {
     FlLimb limb[FL_LIMBS]; // likewise
     int exposure;          // of its amounts; 0: as the paint itself asks for
     FlRect rect;           // the part of it in which the region ever is, with some room
-    uint8_t *painted;   // of rect: 3 bytes of sRGB a pixel, the exemplar's colours; NULL: not open
+    uint8_t *painted;   // of rect: 3 bytes of sRGB a pixel, the exemplar's colours; NULL: none yet
     uint8_t *alpha;     // of rect, behind them in one piece; NULL: paint is on paper
     float reach_px;     // distance that alpha reaches beyond the shape; 0: no alpha
-    GBytes *packed;     // both, while they are not open; NULL: there is no picture yet
     FlFrameStats stats; // of the last frame that was painted, as is what follows
     FlSynthView view;   // nnf NULL: not needed
     double seconds;
@@ -78,28 +77,9 @@ static inline size_t fl_painted_bytes(const FlPaintedRegion *painted)
 /** Frees the picture. */
 void fl_painted_clear(FlPaintedRegion *painted);
 
-/** Packs the picture until the next fl_painted_open(): most of a rectangle is bare paper, which
- * then takes no memory. FL_ERROR_NO_MEMORY. */
-bool fl_painted_pack(FlPaintedRegion *painted, GError **error);
-
-/** The reverse, before the picture is written to; it may be open. One that was never open is made,
- * for rect and reach_px as they are. FL_ERROR_NO_MEMORY. */
+/** Makes room for the picture unless there is, for rect and reach_px as they are: black, which
+ * takes memory where it is written to. FL_ERROR_NO_MEMORY. */
 bool fl_painted_open(FlPaintedRegion *painted, GError **error);
-
-/** The same before all of it is written: what was there before may be gone. */
-bool fl_painted_renew(FlPaintedRegion *painted, GError **error);
-
-/** A region to read, its picture packed or not. */
-typedef struct FlPaintedReader {
-    FlPaintedRegion region; // whose picture is open
-    uint8_t *own;           // picture, if it had to be unpacked
-} FlPaintedReader;
-
-/** Several threads may look at a region at once. FL_ERROR_NO_MEMORY. */
-bool fl_painted_read(const FlPaintedRegion *painted, FlPaintedReader *look, GError **error);
-void fl_painted_reader_clear(FlPaintedReader *look);
-
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlPaintedReader, fl_painted_reader_clear)
 
 /** A pixel of rect as straight RGBA. */
 static inline void fl_painted_pixel(const FlPaintedRegion *painted, size_t p, uint8_t rgba[4])

@@ -105,16 +105,15 @@ bool fl_paint_file_save(const FlPaintedRegion *painted, FlPaintArea area, const 
     const FlRect part = area_of(painted, area), rect = painted->rect;
     const size_t pixels = fl_rect_pixels(part);
     const uint8_t *paper = painted->style->paper;
-    g_auto(FlPaintedReader) look = {0};
     g_autofree uint8_t *rgba = fl_alloc(4 * pixels, 1, "the paint of a region", error);
-    if (!rgba || !fl_painted_read(painted, &look, error))
+    if (!rgba)
         return false;
     for (size_t p = 0; p < pixels; p++) // paper outside painted->rect
-        memcpy(rgba + 4 * p, (uint8_t[]){paper[0], paper[1], paper[2], look.region.alpha ? 0 : 255},
+        memcpy(rgba + 4 * p, (uint8_t[]){paper[0], paper[1], paper[2], painted->alpha ? 0 : 255},
                4);
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++)
-            fl_painted_pixel(&look.region, (size_t)y * (size_t)rect.width + (size_t)x,
+            fl_painted_pixel(painted, (size_t)y * (size_t)rect.width + (size_t)x,
                              rgba + 4 * ((size_t)(rect.y - part.y + y) * (size_t)part.width +
                                          (size_t)(rect.x - part.x + x)));
     g_autofree char *anchor = anchor_text(painted);
@@ -122,7 +121,7 @@ bool fl_paint_file_save(const FlPaintedRegion *painted, FlPaintArea area, const 
     const FlPng png = {.width = part.width,
                        .height = part.height,
                        .rgba = rgba,
-                       .opaque = !look.region.alpha,
+                       .opaque = !painted->alpha,
                        .fast = area == FL_PAINT_AREA_REGION, // the merge is its only reader
                        .place = area == FL_PAINT_AREA_REGION ? &part : NULL,
                        .text = text,
@@ -157,7 +156,7 @@ bool fl_paint_file_load(FlPaintedRegion *painted, const char *path, GError **err
             "%s: %dx%d pixels: expected %dx%d as the frames have, or %dx%d of the region", path,
             picture->width, picture->height, painted->width, painted->height, rect.width,
             rect.height);
-    if (!fl_painted_renew(painted, error))
+    if (!fl_painted_open(painted, error))
         return false;
     load_anchor(path, painted);
     const int left = whole ? rect.x : 0, top = whole ? rect.y : 0;

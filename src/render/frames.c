@@ -85,6 +85,12 @@ static bool inspect_picture(const FlFrames *frames, int p, int frame, GError **e
            (!exports(plan) || !is_new || export_picture(plan, painter, frame, error));
 }
 
+static void trim(const FlPlan *plan)
+{
+    if (fl_shapes_are_large(&plan->shapes))
+        fl_memory_trim();
+}
+
 static bool paint_one(void *data, int p, int frame, GError **error)
 {
     FlFrames *frames = data;
@@ -98,10 +104,8 @@ static bool paint_one(void *data, int p, int frame, GError **error)
     const bool painted = fl_painter_frame(painter, frame, error) &&
                          (!painter->wants_guides || inspect_picture(frames, p, frame, error));
     fl_painter_drop_guides(painter);
-    if (!painted || painter->wants_guides || !fl_shapes_are_large(&plan->shapes))
-        return painted;
-    fl_memory_trim();
-    return fl_painted_pack(&painter->result, error);
+    trim(plan);
+    return painted;
 }
 
 /* A picture of the lead-in of a painter that is at its beginning. */
@@ -170,12 +174,6 @@ static FlComposeInput compose_input(const FlFrames *frames, int frame)
         .gap_px = (float)MAX(plan->options.gap, 0),
         .stain = frames->wet ? fl_wet_layer(frames->wet) : NULL,
         .laid = frames->wet ? fl_wet_laid(frames->wet) : NULL};
-}
-
-static void trim(const FlPlan *plan)
-{
-    if (fl_shapes_are_large(&plan->shapes))
-        fl_memory_trim();
 }
 
 /* Paints the regions of a frame, unless the painters show it already. */

@@ -69,8 +69,6 @@ bool fl_loop_blend(const FlLoop *loop, int index, FlPaintedRegion *painted, GErr
     const size_t bytes = fl_painted_bytes(painted);
     if (loop->n == 0 || k < 0)
         return true;
-    if (!fl_painted_open(painted, error))
-        return false;
     g_autofree uint8_t *lead_in = fl_alloc(bytes, 1, "a picture", error);
     if (!lead_in || !fl_spill_get(loop->pictures, (size_t)k, lead_in, bytes, error))
         return false;

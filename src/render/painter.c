@@ -31,11 +31,11 @@ static FlRect cropped(const FlPainter *painter)
                 painter->plan);
 }
 
-/* Measured: the packed state, and what packing leaves of a picture; bare paper takes little. */
-double fl_painter_bytes(const FlPainter *painter, bool packed)
+/* The picture, and, measured, the packed state, in which bare paper takes little. */
+double fl_painter_bytes(const FlPainter *painter)
 {
     const double rect = (double)fl_rect_pixels(painter->result.rect);
-    return 10 * MIN(painter->plan->area_px, rect) + (packed ? 0 : 3 * rect);
+    return 10 * MIN(painter->plan->area_px, rect) + 3 * rect;
 }
 
 /* A region that no frame shows has no paint, no guides and no room. */
@@ -216,12 +216,11 @@ static bool keep_picture(FlPainter *painter, GError **error)
     reuse->n_painted++;
     if (!reuse->cache)
         return true;
-    g_auto(FlPaintedReader) look = {0};
+    const FlPaintedRegion *result = &painter->result;
     g_autoptr(GBytes) state = painter->plan->engine->save(painter->paint, error);
-    if (!state || !fl_painted_read(&painter->result, &look, error))
-        return false;
-    fl_reuse_keep(reuse, look.region.painted, fl_painted_bytes(&look.region), state);
-    return true;
+    if (state)
+        fl_reuse_keep(reuse, result->painted, fl_painted_bytes(result), state);
+    return state;
 }
 
 static bool run_engine(FlPainter *painter, GError **error)
@@ -233,7 +232,7 @@ static bool run_engine(FlPainter *painter, GError **error)
         return false;
     if (rests && engine->rest(painter->paint))
         return keep_picture(painter, error);
-    if ((rests && !fl_painter_make_guides(painter, error)) || !fl_painted_renew(result, error))
+    if ((rests && !fl_painter_make_guides(painter, error)) || !fl_painted_open(result, error))
         return false;
     result->from = FL_FROM_ENGINE;
     const FlEnginePaint paint = {result->painted, result->alpha, &result->stats,

@@ -57,9 +57,8 @@ void fl_painter_clear(FlPainter *painter);
 /** Goes on with a plan by which the region is painted as before. */
 void fl_painter_follow(FlPainter *painter, const FlRegionPlan *region);
 
-/** An estimate of the bytes that the painter keeps between frames. packed: its picture is
- * packed. */
-double fl_painter_bytes(const FlPainter *painter, bool packed);
+/** An estimate of the bytes that the painter keeps between frames. */
+double fl_painter_bytes(const FlPainter *painter);
 
 /** Makes guides for the whole film, unless it has them. The random numbers depend on the seed and
  * the region's name. */

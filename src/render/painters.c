@@ -17,7 +17,7 @@ static bool check_memory(const FlPainters *painters, double bytes, GError **erro
     bytes += fl_shapes_least_bytes(shapes);
     for (int p = 0; p < painters->n; p++) {
         const FlPainter *painter = painters->painter[p];
-        bytes += fl_painter_bytes(painter, fl_shapes_are_large(shapes));
+        bytes += fl_painter_bytes(painter);
         largest = MAX(largest, (double)fl_rect_pixels(painter->result.rect));
     }
     bytes += 90 * largest; // measured: what is painted at a time, and scratch
