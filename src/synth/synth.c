@@ -32,11 +32,6 @@ FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynt
     return synth;
 }
 
-static void forget_packed(FlSynth *synth)
-{
-    g_clear_pointer(&synth->packed, g_bytes_unref);
-}
-
 static void clear_frame(FlSynth *synth)
 {
     for (int l = 0; l < synth->n_levels; l++)
@@ -54,7 +49,6 @@ void fl_synth_free(FlSynth *synth)
     if (!synth)
         return;
     clear_frame(synth);
-    forget_packed(synth);
     fl_synth_state_clear(&synth->last);
     g_free(synth);
 }
@@ -219,6 +213,7 @@ static bool prepare(FlSynth *synth, FlGuides *guides, FlRect rect, FlCarried *ca
         !dry(synth, guides, rect, continues ? carried : NULL, &wet, &goes_on, error))
         return false;
     fl_synth_state_clear(&synth->last);
+    synth->last.valid = continues;
     synth->last.wet = g_steal_pointer(&wet), synth->last.dries = goes_on;
     stats->seconds_temporal = fl_lap(&time);
     if (!take_guides(synth, guides, rect, error))
@@ -231,22 +226,18 @@ static bool prepare(FlSynth *synth, FlGuides *guides, FlRect rect, FlCarried *ca
     return true;
 }
 
-/* The finest field, which is handed over, and where it lies. */
-static void remember(FlSynth *synth)
+/* The finest field, which is handed over, where it lies, and the picture. */
+static bool remember(FlSynth *synth, const uint8_t *rgb, GError **error)
 {
-    synth->last.valid = true;
-    synth->last.rect = synth->target.rect;
-    synth->last.nnf = synth->nnf[0];
+    FlSynthState *last = &synth->last;
+    last->valid = true;
+    last->rect = synth->target.rect;
+    last->nnf = synth->nnf[0];
     synth->nnf[0] = (FlNnf){0};
-}
-
-/* The picture as well, for as long as the planes of the frame are kept. */
-static bool remember_picture(FlSynth *synth, const uint8_t *rgb, GError **error)
-{
-    if (!fl_synth_state_room(&synth->last, error))
-        return false;
-    memcpy(synth->last.rgb, rgb, fl_synth_state_painted(&synth->last));
-    return true;
+    last->rgb = fl_alloc_unset(fl_synth_state_painted(last), 1, "a picture", error);
+    if (last->rgb)
+        memcpy(last->rgb, rgb, fl_synth_state_painted(last));
+    return last->rgb;
 }
 
 /* True if a region at rest keeps its picture in the frame-th frame. */
@@ -263,30 +254,6 @@ bool fl_synth_rest(FlSynth *synth)
         return false;
     synth->last.frame++;
     return true;
-}
-
-/* The planes of the last frame: regions wait for their next one with packed planes. */
-static bool unpack_last(FlSynth *synth, GError **error)
-{
-    const int frame = synth->last.frame; // it may have rested since it was packed
-    if (!synth->last.valid || synth->last.nnf.match)
-        return true;
-    const bool done =
-        fl_synth_state_room(&synth->last, error) &&
-        fl_synth_state_unpack(&synth->last, synth->packed, &synth->exemplar->level[0], error);
-    synth->last.frame = frame;
-    return done;
-}
-
-/* Whose picture is `rgb`. */
-static bool pack_last(FlSynth *synth, uint8_t *rgb, GError **error)
-{
-    FlSynthState last = synth->last;
-    last.rgb = rgb;
-    if (!synth->packed)
-        synth->packed = fl_synth_state_pack(&last, error);
-    fl_synth_state_clear(&synth->last);
-    return synth->packed != NULL;
 }
 
 /* That of the picture which is kept; only its field is, if no view of it is needed. */
@@ -314,10 +281,9 @@ static bool paint_rect(FlSynth *synth, FlGuides *guides, FlRect rect, uint8_t *r
                         synth->last.painted_width, synth->last.painted_height, rgb);
     const FlTargetLevel *full = &synth->target.level[0];
     const bool has_temporal = synth->last.valid && fl_synth_finest_searched(synth) == 0;
-    remember(synth);
     synth->view = (FlSynthView){rect, &synth->last.nnf, has_temporal ? full->temporal : NULL,
                                 has_temporal ? full->temporal_weight : NULL};
-    return true;
+    return remember(synth, rgb, error);
 }
 
 /* Paints the frame; shows: its view is needed. */
@@ -327,8 +293,6 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
     synth->last.frame++;
     synth->boil =
         fl_boil_step(synth->params->boil, synth->last.frame, synth->exemplar->level[0].window);
-    if (!unpack_last(synth, error))
-        return false;
     const FlRestRule rule = rest_rule(synth);
     if (may_rest(synth, synth->last.frame) &&
         fl_rests(guides, &rule, synth->last.mask, synth->last.wet)) {
@@ -337,13 +301,12 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
         return true;
     }
     clear_frame(synth);
-    forget_packed(synth);
     synth->moves = guides->has_motion && synth->params->carry > 0;
     fl_cost_scale_init(&synth->scale, synth->params);
     const FlRect box = fl_guides_box(guides, FL_INSIDE);
     if (box.width == 0) {
         fill_paper(synth, rgb);
-        synth->last.valid = false;
+        fl_synth_state_clear(&synth->last);
         return true;
     }
     const bool disposable = guides->disposable;
@@ -396,12 +359,11 @@ bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats
     *s = (FlFrameStats){0};
     const bool done =
         paint(synth, guides, rgb, s, view, error) && (!view || double_view(synth, error));
-    if (view) {
+    if (view)
         *view = synth->view;
-        return done && (!synth->last.valid || remember_picture(synth, rgb, error));
-    }
-    clear_frame(synth);
-    return done && pack_last(synth, rgb, error);
+    else
+        clear_frame(synth);
+    return done;
 }
 
 bool fl_synth_guide_pairs(const FlSynth *synth, FlGuidePairs *pairs, GError **error)
@@ -412,26 +374,10 @@ bool fl_synth_guide_pairs(const FlSynth *synth, FlGuidePairs *pairs, GError **er
 
 GBytes *fl_synth_save(FlSynth *synth, GError **error)
 {
-    GBytes *packed = synth->packed ? fl_synth_state_later(synth->packed, synth->last.frame)
-                                   : fl_synth_state_pack(&synth->last, error);
-    if (!packed)
-        return NULL;
-    forget_packed(synth);
-    synth->packed = packed;
-    return g_bytes_ref(packed);
+    return fl_synth_state_pack(&synth->last, error);
 }
 
 bool fl_synth_load(FlSynth *synth, GBytes *state, GError **error)
 {
-    forget_packed(synth);
-    fl_synth_state_clear(&synth->last);
-    if (!fl_synth_state_room(&synth->last, error))
-        return false;
-    const bool done = fl_synth_state_unpack(&synth->last, state, &synth->exemplar->level[0], error);
-    fl_synth_state_clear(&synth->last);
-    if (done)
-        synth->packed = g_bytes_ref(state);
-    else
-        synth->last.valid = false;
-    return done;
+    return fl_synth_state_unpack(&synth->last, state, &synth->exemplar->level[0], error);
 }

@@ -16,8 +16,7 @@ struct FlSynth {
     int width, height, n_levels;
     float side; // the larger one of the whole frames, px
     uint64_t key;
-    FlSynthState last; // after the last frame; its planes are here in a frame, and for a view
-    GBytes *packed;    // `last`, with its planes; NULL after a change
+    FlSynthState last; // after the last frame
     int boil;          // fl_boil_step() before the frame in hand
     bool moves;        // the drawing's motion is known in the frame in hand
     bool wants_energies;

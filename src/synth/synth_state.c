@@ -82,12 +82,12 @@ static void parts_of(const FlSynthState *state, FlMatch *matches, FlSpan parts[N
     parts[PICTURE] = (FlSpan){state->rgb, fl_synth_state_painted(state)};
 }
 
-bool fl_synth_state_room(FlSynthState *state, GError **error)
+static bool make_room(FlSynthState *state, GError **error)
 {
-    return (state->mask || (state->mask = fl_alloc(mask_bytes(state), 1, "a mask", error))) &&
-           (state->wet || (state->wet = fl_alloc(mask_bytes(state), 1, "a mask", error))) &&
-           (state->rgb ||
-            (state->rgb = fl_alloc(fl_synth_state_painted(state), 1, "a picture", error)));
+    return fl_nnf_init(&state->nnf, state->rect.width, state->rect.height, error) &&
+           (state->mask = fl_alloc(mask_bytes(state), 1, "a mask", error)) &&
+           (state->wet = fl_alloc(mask_bytes(state), 1, "a mask", error)) &&
+           (state->rgb = fl_alloc(fl_synth_state_painted(state), 1, "a picture", error));
 }
 
 void fl_synth_state_clear(FlSynthState *state)
@@ -96,6 +96,7 @@ void fl_synth_state_clear(FlSynthState *state)
     g_clear_pointer(&state->mask, free);
     g_clear_pointer(&state->wet, free);
     g_clear_pointer(&state->rgb, free);
+    state->valid = false;
 }
 
 GBytes *fl_synth_state_pack(const FlSynthState *state, GError **error)
@@ -111,18 +112,6 @@ GBytes *fl_synth_state_pack(const FlSynthState *state, GError **error)
     return fl_pack(&header, sizeof header, parts, state->valid ? N_PARTS : 0, error);
 }
 
-GBytes *fl_synth_state_later(GBytes *bytes, int frame)
-{
-    size_t size;
-    const uint8_t *data = g_bytes_get_data(bytes, &size);
-    uint8_t *copy = g_memdup2(data, size);
-    Header header;
-    memcpy(&header, copy, sizeof header);
-    header.frame = frame;
-    memcpy(copy, &header, sizeof header);
-    return g_bytes_new_take(copy, size);
-}
-
 /* True if a rectangle is not empty and lies within the frame. */
 static bool fits(const Header *h, const FlSynthState *state)
 {
@@ -135,26 +124,22 @@ static bool fits(const Header *h, const FlSynthState *state)
 static bool unpack_frame(FlSynthState *state, GBytes *bytes, const FlExemplarLevel *level,
                          GError **error)
 {
-    if (!fl_nnf_init(&state->nnf, state->rect.width, state->rect.height, error))
-        return false;
     FlSpan parts[N_PARTS];
+    if (!make_room(state, error))
+        return false;
     parts_of(state, state->nnf.match, parts);
-    bool whole = fl_state_bytes_parts(bytes, sizeof(Header), parts, N_PARTS, error);
-    if (whole) {
-        add_up(&state->nnf);
-        whole = fl_nnf_fits(&state->nnf, level) ||
-                fl_state_bytes_damaged("its field points outside the style", error);
-    }
-    if (!whole)
-        fl_nnf_clear(&state->nnf);
-    return whole;
+    if (!fl_state_bytes_parts(bytes, sizeof(Header), parts, N_PARTS, error))
+        return false;
+    add_up(&state->nnf);
+    return fl_nnf_fits(&state->nnf, level) ||
+           fl_state_bytes_damaged("its field points outside the style", error);
 }
 
 bool fl_synth_state_unpack(FlSynthState *state, GBytes *bytes, const FlExemplarLevel *level,
                            GError **error)
 {
     Header h;
-    state->nnf = (FlNnf){0};
+    fl_synth_state_clear(state);
     if (!fl_state_bytes_header(bytes, &h, sizeof h, error))
         return false;
     if (h.frame < 0 || (h.valid != 0 && h.valid != 1) || (h.dries != 0 && h.dries != 1))
@@ -162,8 +147,12 @@ bool fl_synth_state_unpack(FlSynthState *state, GBytes *bytes, const FlExemplarL
     if (h.valid && !fits(&h, state))
         return fl_state_bytes_damaged("its field lies outside the frame", error);
     state->frame = h.frame;
-    state->valid = h.valid;
     state->dries = h.dries;
     state->rect = (FlRect){h.x, h.y, h.width, h.height};
-    return !state->valid || unpack_frame(state, bytes, level, error);
+    if (h.valid && !unpack_frame(state, bytes, level, error)) {
+        fl_synth_state_clear(state);
+        return false;
+    }
+    state->valid = h.valid;
+    return true;
 }

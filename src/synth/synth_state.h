@@ -26,25 +26,19 @@ static inline size_t fl_synth_state_painted(const FlSynthState *state)
     return 3 * (size_t)state->painted_width * (size_t)state->painted_height;
 }
 
-/** Makes room for mask, wetness and picture, unless there is. FL_ERROR_NO_MEMORY. */
-bool fl_synth_state_room(FlSynthState *state, GError **error);
-
-/** Frees the planes: field, mask, wetness and picture. The rest stays. */
+/** Frees the planes: field, mask, wetness and picture, so that there was no paint. The rest stays.
+ */
 void fl_synth_state_clear(FlSynthState *state);
 
 /** Packed, in this machine's byte order. Returns: NULL with FL_ERROR_NO_MEMORY set. */
 GBytes *fl_synth_state_pack(const FlSynthState *state, GError **error);
 
-/** The same bytes for a region that has rested since: `frame` frames have been painted. */
-GBytes *fl_synth_state_later(GBytes *bytes, int frame);
-
 /**
- * The reverse, for an exemplar whose level 0 is `level`. The sizes are the caller's, as are
- * state->mask, state->wet and state->rgb, which are filled. The bytes need not be trusted: a field
- * that points outside the exemplar is an error.
+ * The reverse, for an exemplar whose level 0 is `level`, into a state of the same sizes, whose
+ * planes are freed. The bytes need not be trusted: a field that points outside the exemplar is an
+ * error.
  *
- * Returns: false with FL_ERROR_CHANGED or FL_ERROR_NO_MEMORY set; the field is then empty, and mask
- * and rgb hold anything, as does wet. Else state->nnf is to be cleared.
+ * Returns: false with FL_ERROR_CHANGED or FL_ERROR_NO_MEMORY set; the planes are then cleared.
  */
 bool fl_synth_state_unpack(FlSynthState *state, GBytes *bytes, const FlExemplarLevel *level,
                            GError **error);

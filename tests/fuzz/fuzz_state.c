@@ -21,20 +21,14 @@ static void check_record(const uint8_t *data, size_t size)
 static void check_past(GBytes *bytes)
 {
     const FlExemplarLevel level = {.width = 40, .height = 30, .n_frames = 5};
-    uint8_t mask[SIDE * SIDE], wet[SIDE * SIDE], rgb[3 * SIDE * SIDE];
     g_autoptr(GError) error = NULL;
-    FlSynthState state = {.width = SIDE,
-                          .height = SIDE,
-                          .painted_width = SIDE,
-                          .painted_height = SIDE,
-                          .mask = mask,
-                          .wet = wet,
-                          .rgb = rgb};
+    FlSynthState state = {
+        .width = SIDE, .height = SIDE, .painted_width = SIDE, .painted_height = SIDE};
     const bool read = fl_synth_state_unpack(&state, bytes, &level, &error);
     g_assert_true(read == (error == NULL));
     for (int p = 0; p < state.nnf.width * state.nnf.height && read && state.valid; p++)
         g_assert_cmpint(state.nnf.match[p].frame, <, level.n_frames);
-    fl_nnf_clear(&state.nnf);
+    fl_synth_state_clear(&state);
 }
 
 /* The bytes as they are, and with all behind the header packed as a state's are. */
