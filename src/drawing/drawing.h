@@ -158,9 +158,6 @@ FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **e
 FlDrawList *fl_drawing_draw_by_hand(const FlDrawing *drawing, int frame, const FlHand *hand,
                                     GError **error);
 
-/** Opens the result of fl_draws_pack(). */
-FlDrawList *fl_drawing_unpack_draws(const FlDrawing *drawing, GBytes *packed, GError **error);
-
 /**
  * The region's whole-shape mask in a frame: the union of its draws' coverage. A shape that fades,
  * such as a glow, is inside as far as it is seen; what is drawn of it is up to its coverage.

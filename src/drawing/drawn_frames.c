@@ -47,14 +47,6 @@ static GBytes *find_kept(FlDrawing *drawing, int frame)
     return found;
 }
 
-FlDrawList *fl_drawing_unpack_draws(const FlDrawing *drawing, GBytes *packed, GError **error)
-{
-    const FlDrawBounds bounds = {drawing->width, drawing->height, (int)drawing->regions->len,
-                                 INT_MAX};
-    return fl_draws_unpack(g_bytes_get_data(packed, NULL), g_bytes_get_size(packed), &bounds,
-                           error);
-}
-
 static FlDrawList *unpack(const FlDrawing *drawing, int frame, const void *data, size_t bytes,
                           GError **error)
 {

@@ -10,7 +10,6 @@
 #include "inspect/ebsynth.h"
 #include "io/picture_file.h"
 #include "render/motion_vectors.h"
-#include "worker/messages.h"
 
 #define WET_IN_DRAFTS 3 // frames from which wet paper is known
 
@@ -139,14 +138,14 @@ static bool draw_shapes(void *data, GError **error)
                          .seed = plan->options.seed,
                          .page = fl_page_scale(shapes->width, shapes->height),
                          .tooth = fl_paper_sheet_tooth(frames->sheet, frames->drawn)};
-    g_autoptr(FlDrawList) draws = fl_hold_draw_list(shapes->drawing, &hand, shapes->hold,
-                                                    shapes->hold_of, frames->drawn, error);
-    return draws && (frames->draws = fl_draws_pack(draws, error));
+    frames->draws = fl_hold_draw_list(shapes->drawing, &hand, shapes->hold, shapes->hold_of,
+                                      frames->drawn, error);
+    return frames->draws;
 }
 
 static void start_drawing(FlFrames *frames, int frame)
 {
-    g_clear_pointer(&frames->draws, g_bytes_unref); // of a frame that was stopped
+    g_clear_pointer(&frames->draws, fl_draw_list_free); // of a frame that was stopped
     frames->drawn = frame;
     fl_task_start(&frames->drawing, draw_shapes, frames, frames->beside);
 }
@@ -317,11 +316,8 @@ static bool compose(FlFrames *frames, int frame, int next, bool marks, FlComposi
         return false;
     if (!composed)
         return true;
-    g_autoptr(FlDrawList) draws = fl_drawing_unpack_draws(shapes->drawing, frames->draws, error);
-    g_clear_pointer(&frames->draws, g_bytes_unref);
+    g_autoptr(FlDrawList) draws = g_steal_pointer(&frames->draws);
     frames->drawn = -1;
-    if (!draws)
-        return false;
     if (next >= 0 && frames->beside)
         start_drawing(frames, fl_drawing_shown(shapes->drawing, next));
     if (frames->wet && marks && !fl_wet_frame(frames->wet, shown, error))
@@ -526,7 +522,7 @@ bool fl_frames_follow(FlFrames *frames, const FlRenderOptions *options, size_t m
         return true;
     }
     (void)fl_task_wait(&frames->drawing, NULL);
-    g_clear_pointer(&frames->draws, g_bytes_unref);
+    g_clear_pointer(&frames->draws, fl_draw_list_free);
     frames->old_plan = frames->plan, frames->plan = plan;
     drop_earlier(frames);
     frames->drawn = frames->shown = -1;
@@ -541,7 +537,7 @@ bool fl_frames_follow(FlFrames *frames, const FlRenderOptions *options, size_t m
 void fl_frames_clear(FlFrames *frames)
 {
     fl_task_clear(&frames->drawing);
-    g_clear_pointer(&frames->draws, g_bytes_unref);
+    g_clear_pointer(&frames->draws, fl_draw_list_free);
     fl_painters_clear(&frames->painters);
     fl_wet_free(frames->wet);
     fl_motion_source_free(frames->motion);

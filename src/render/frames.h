@@ -28,7 +28,7 @@ typedef struct FlFrames {
     int marked;                // the last frame in the wet paper; -1: no frame yet
     int shown;                 // the frame whose pictures the painters have; -1: no frame yet
     int drawn;                 // the frame of `draws`, which `drawing` makes; -1: no frame
-    GBytes *draws;             // its shapes, packed
+    FlDrawList *draws;         // its shapes
     const char *advice;        // advice to the user after an interruption; static
     int before;                // frames that earlier runs have painted
     gint64 start, first_frame; // microseconds, as g_get_monotonic_time()
