@@ -1,19 +1,6 @@
 #include "base/windows.h"
 
-/** Takes n columns of a row into their sums, or out of them. */
-static void add_row(const int16_t *row, size_t n, uint32_t *restrict sums)
-{
-    for (size_t x = 0; x < n; x++)
-        sums[x] += (uint32_t)row[x];
-}
-
-static void take_row(const int16_t *row, size_t n, uint32_t *restrict sums)
-{
-    for (size_t x = 0; x < n; x++)
-        sums[x] -= (uint32_t)row[x];
-}
-
-/** Both at once. */
+/** Takes n columns of a row into their sums, and those of another one out of them. */
 static void move_rows(const int16_t *enters, const int16_t *leaves, size_t n,
                       uint32_t *restrict sums)
 {
@@ -35,18 +22,12 @@ void fl_window_sums(const int16_t *plane, FlRect box, int r, uint32_t *sums)
 {
     const size_t width = (size_t)box.width, reach = (size_t)r;
     g_autofree uint32_t *columns = g_new0(uint32_t, width + 2 * reach + 1);
-    uint32_t *own = columns + reach + 1;
-    for (int y = 0; y < MIN(r, box.height); y++)
-        add_row(plane + (size_t)y * width, width, own);
-    for (int y = 0; y < box.height; y++) {
-        const int16_t *enters = y + r < box.height ? plane + (size_t)(y + r) * width : NULL;
-        const int16_t *leaves = y > r ? plane + (size_t)(y - r - 1) * width : NULL;
-        if (enters && leaves)
-            move_rows(enters, leaves, width, own);
-        else if (enters)
-            add_row(enters, width, own);
-        else if (leaves)
-            take_row(leaves, width, own);
-        add_columns(columns, width, reach, sums + (size_t)y * width);
+    g_autofree int16_t *beyond = g_new0(int16_t, MAX(width, 1));
+    for (int y = -r; y < box.height; y++) {
+        const int16_t *enters = y + r < box.height ? plane + (size_t)(y + r) * width : beyond;
+        const int16_t *leaves = y > r ? plane + (size_t)(y - r - 1) * width : beyond;
+        move_rows(enters, leaves, width, columns + reach + 1);
+        if (y >= 0)
+            add_columns(columns, width, reach, sums + (size_t)y * width);
     }
 }
