@@ -92,16 +92,12 @@ static int otsu_threshold(const uint32_t count[256])
  */
 static float choose_threshold(const float *most, size_t pixels)
 {
-    uint32_t count[256] = {0}, bare = 0, sum = 0;
+    uint32_t count[256] = {0};
     for (size_t i = 0; i < pixels; i++)
         count[CLAMP((int)most[i], 0, 255)]++;
     const int between = otsu_threshold(count);
-    for (int i = 0; i < between; i++)
-        bare += count[i];
-    int median = 0;
-    while (2 * (sum += count[median]) < bare)
-        median++;
-    const float noise = MIN(NOISES * ((float)median + 0.5f), (float)between);
+    const float median = (float)fl_median_bin(count, between) + 0.5f; // of what is bare
+    const float noise = MIN(NOISES * median, (float)between);
     return MAX(FAINTEST, MAX(noise, (float)between / SHARPNESS));
 }
 

@@ -72,6 +72,18 @@ bool fl_border_estimate(const FlClip *clip, const uint8_t *mask, float *border_p
 
 /* ---- light ----------------------------------------------------------------------------------- */
 
+/** The first bin of a histogram up to which half of what it counts lies; 0: it counts nothing. */
+static inline int fl_median_bin(const uint32_t *count, int bins)
+{
+    uint64_t n = 0, sum = 0;
+    int bin = 0;
+    for (int k = 0; k < bins; k++)
+        n += count[k];
+    while (2 * (sum += count[bin]) < n)
+        bin++;
+    return bin;
+}
+
 /** Light that falls off smoothly: a polynomial of degree two over the frame for each channel. */
 typedef struct FlFlatField {
     int width, height;

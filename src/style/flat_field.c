@@ -121,11 +121,7 @@ static void solve(Fit *fit, FlFlatField *field)
 /* Three times the median residual: beyond it is paint, or dirt. */
 static double next_limit(const Fit *fit)
 {
-    size_t sum = 0;
-    int median = 0;
-    while (2 * (sum += fit->residual[median]) < fit->n)
-        median++;
-    return CLAMP(3.0 * (median + 1), NARROWEST, WIDEST);
+    return CLAMP(3.0 * (fl_median_bin(fit->residual, 256) + 1), NARROWEST, WIDEST);
 }
 
 static void set_even(FlFlatField *field)
@@ -170,7 +166,7 @@ static double frame_gain(const FlFlatField *field, const uint8_t *rgb, const uin
 {
     enum { STEPS = 512 }; // of 1/256
     const int width = field->width, height = field->height;
-    uint32_t count[STEPS] = {0}, n = 0, sum = 0;
+    uint32_t count[STEPS] = {0}, n = 0;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             const size_t i = (size_t)y * width + x;
@@ -180,10 +176,8 @@ static double frame_gain(const FlFlatField *field, const uint8_t *rgb, const uin
             count[CLAMP((int)(ratio * 256 + 0.5), 0, STEPS - 1)]++;
             n++;
         }
-    int median = 0;
-    while (n && 2 * (sum += count[median]) < n)
-        median++;
-    return n * 50 > (uint32_t)width * height ? CLAMP(median / 256.0, 0.67, 1.5) : 1;
+    return n * 50 > (uint32_t)width * height ? CLAMP(fl_median_bin(count, STEPS) / 256.0, 0.67, 1.5)
+                                             : 1;
 }
 
 void fl_flat_field_flatten(const FlFlatField *field, uint8_t *rgb, const uint8_t *mask,

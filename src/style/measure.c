@@ -80,17 +80,6 @@ static void add_pixel(Pass *pass, int x, int y, const uint8_t *rgb, FlFrameMeasu
     }
 }
 
-static float median_of(const uint32_t *count, int bins, float step)
-{
-    uint64_t n = 0, sum = 0;
-    for (int i = 0; i < bins; i++)
-        n += count[i];
-    for (int i = 0; i < bins && n > 0; i++)
-        if (2 * (sum += count[i]) >= n)
-            return step * ((float)i + 0.5f);
-    return 0;
-}
-
 /* The median lightness of the pixels outside a mask; -1 without such pixels. */
 static float bare_lightness(const uint8_t *rgb, const uint8_t *mask, size_t pixels)
 {
@@ -100,7 +89,7 @@ static float bare_lightness(const uint8_t *rgb, const uint8_t *mask, size_t pixe
             count[(int)lightness(rgb + 3 * i)]++;
             n++;
         }
-    return n > 0 ? median_of(count, 256, 1) : -1;
+    return n > 0 ? (float)fl_median_bin(count, 256) + 0.5f : -1;
 }
 
 static float paint_change(const uint8_t *rgb, const uint8_t *next, const uint8_t *mask,
@@ -128,7 +117,9 @@ static void measure_frame(Pass *pass, int index)
             if (mask[(size_t)y * style->width + x] >= FL_INSIDE)
                 add_pixel(pass, x, y, rgb, frame);
     const float paint = MAX(1, frame->paint);
-    frame->front = median_of(pass->speeds, SPEEDS, SPEED_STEP);
+    frame->front = pass->outline > outline
+                       ? SPEED_STEP * ((float)fl_median_bin(pass->speeds, SPEEDS) + 0.5f)
+                       : 0;
     frame->steady /= MAX(1, (float)(pass->outline - outline));
     frame->resting /= paint;
     frame->moving /= paint;

@@ -2,18 +2,6 @@
 
 #include <string.h>
 
-/* The value below which half of a histogram of 256 bins lies. */
-static uint8_t median_of(const uint32_t histogram[256])
-{
-    uint64_t total = 0, sum = 0;
-    for (int i = 0; i < 256; i++)
-        total += histogram[i];
-    for (int i = 0; i < 256; i++)
-        if (2 * (sum += histogram[i]) >= total)
-            return (uint8_t)i;
-    return 255;
-}
-
 static void median_outside(const FlClip *clip, const uint8_t *mask, uint8_t paper[3])
 {
     const size_t pixels = (size_t)clip->width * clip->height * clip->n_frames;
@@ -26,7 +14,7 @@ static void median_outside(const FlClip *clip, const uint8_t *mask, uint8_t pape
                 histogram[c][clip->rgb[3 * i + c]]++;
         }
     for (int c = 0; c < 3; c++)
-        paper[c] = bare > pixels / 1000 ? median_of(histogram[c]) : 255;
+        paper[c] = bare > pixels / 1000 ? (uint8_t)fl_median_bin(histogram[c], 256) : 255;
 }
 
 enum { BINS = 32, BIN = 256 / BINS };
@@ -88,7 +76,7 @@ static void commonest_on_rim(const FlClip *clip, uint8_t paper[3])
             fullest_bin(count, bin);
     }
     for (int c = 0; c < 3; c++)
-        paper[c] = median_of(histogram[c]);
+        paper[c] = (uint8_t)fl_median_bin(histogram[c], 256);
 }
 
 void fl_paper_estimate(const FlClip *clip, const uint8_t *mask, uint8_t paper[3])
