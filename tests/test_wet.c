@@ -489,18 +489,18 @@ static double blue_at(const FlPicture *picture, int x, int y)
 }
 
 /* By how much a red shape that has left changes a channel of what it was seen on, from x to
- * x + width, which comes up by `rocks` px in every other frame. */
-static double change_on(const char *fill, int x, int width, int rocks, int channel)
+ * x + width, which comes up by `rocks` px in every other frame; below it something sinks. */
+static double change_on(const char *fill, int x, int width, int rocks, int sinks, int channel)
 {
     double mean[2];
     for (int k = 0; k < 2; k++) {
         g_auto(GStrv) frames = g_new0(char *, 9);
         for (int f = 1; f <= 8; f++)
-            frames[f - 1] = g_strdup_printf(
-                "<path d='M70 9h9v9h-9z' fill='#c93'/>" // below the ground
-                "<path d='M%d %dh%dv36h%dz' fill='%s'/>"
-                "<path d='M%d 68h20v20h-20z' fill='#d33'/>",
-                x, 60 - rocks * (f % 2), width, -width, fill, f < 7 ? 12 + 6 * f : 900);
+            frames[f - 1] = g_strdup_printf("<path d='M22 %dh16v80h-16z' fill='#c93'/>"
+                                            "<path d='M%d %dh%dv36h%dz' fill='%s'/>"
+                                            "<path d='M%d 68h20v20h-20z' fill='#d33'/>",
+                                            9 + sinks * f, x, 60 - rocks * (f % 2), width, -width,
+                                            fill, f < 7 ? 12 + 6 * f : 900);
         FlPicture *picture = last_of(frames, 96, k ? "1" : "0", NULL);
         mean[k] = mean_at(picture, 30, 78, channel);
         fl_picture_free(picture);
@@ -508,16 +508,18 @@ static double change_on(const char *fill, int x, int width, int rocks, int chann
     return mean[1] - mean[0];
 }
 
-/* What spans the page and rests is ground, which stains darken; dark ground they thin. A face, and
- * water that moves, are none. */
+/* What spans the page and rests is ground, which stains darken; dark ground they thin. A face,
+ * water that moves, and hills that hide what moves, are none. */
 static void test_ground(void)
 {
-    const double pale = change_on("#cdc", -9, 114, 0, 2), dark = change_on("#112", -9, 114, 0, 0);
+    const double pale = change_on("#cdc", -9, 114, 0, 0, 2),
+                 dark = change_on("#112", -9, 114, 0, 0, 0);
     g_test_message("blue of pale ground %+.1f, red of dark ground %+.1f", pale, dark);
     g_assert_cmpfloat(pale, <, -4);
     g_assert_cmpfloat(dark, >, 2);
-    g_assert_cmpfloat(change_on("#cdc", 2, 92, 0, 2), ==, 0);
-    g_assert_cmpfloat(fabs(change_on("#cdc", -9, 114, 2, 2)), <, 0.5);
+    g_assert_cmpfloat(change_on("#cdc", 2, 92, 0, 0, 2), ==, 0);
+    g_assert_cmpfloat(fabs(change_on("#cdc", -9, 114, 2, 0, 2)), <, 0.5);
+    g_assert_cmpfloat(fabs(change_on("#cdc", -9, 114, 0, 7, 2)), <, 0.5);
 }
 
 /* A stain at the top of the page turns with the ground, clockwise by 32 degrees. */

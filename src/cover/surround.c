@@ -294,30 +294,39 @@ static bool put_shown(const FlSurround *surround, const Frame *frame, GError **e
     return stored;
 }
 
+/** Notes a draw as the lowest figure of pixels that have none yet; ground hides what is below. */
+static void add_lowest(const FlDraw *draw, bool ground, int width, uint16_t *lowest)
+{
+    const FlRect box = draw->area.box;
+    for (int y = 0; y < box.height; y++) {
+        const uint8_t *coverage = draw->coverage + (size_t)y * (size_t)box.width;
+        uint16_t *row = lowest + (size_t)(box.y + y) * (size_t)width + box.x;
+        for (int x = 0; x < box.width; x++)
+            if (coverage[x] >= 128 && (ground || row[x] == 0))
+                row[x] = ground ? 0 : (uint16_t)(draw->region + 1);
+    }
+}
+
 /** Stores the lowest figure of each pixel, byte by byte: of all that have paint, whichever of them
  * this run paints. */
 static bool put_lowest(const FlSurround *surround, const Frame *frame, const FlEdge *limits,
                        const bool *ground, GError **error)
 {
-    const FlRect page = {0, 0, surround->width, surround->height};
-    bool stored = true;
+    const size_t n = (size_t)surround->width * (size_t)surround->height;
+    g_autofree uint16_t *lowest = fl_alloc(n, sizeof *lowest, "regions", error);
+    bool stored = lowest != NULL;
+    for (int d = 0; d < frame->draws->n && stored; d++) {
+        const FlDraw *draw = &frame->draws->draw[d];
+        if (limits[draw->region] != FL_EDGE_NONE)
+            add_lowest(draw, ground && ground[draw->region], surround->width, lowest);
+    }
     for (int k = 0; k < 2 && stored; k++) {
-        for (int d = frame->draws->n - 1; d >= 0; d--) {
-            const FlDraw *draw = &frame->draws->draw[d];
-            const int region = draw->region, byte = ((region + 1) >> (8 * k)) & 255;
-            const FlRect box = draw->area.box;
-            if (limits[region] == FL_EDGE_NONE || (ground && ground[region]))
-                continue;
-            for (int y = 0; y < box.height; y++)
-                for (int x = 0; x < box.width; x++)
-                    if (draw->coverage[(size_t)y * (size_t)box.width + (size_t)x] >= 128)
-                        frame->coverage[(size_t)(box.y + y) * (size_t)page.width +
-                                        (size_t)(box.x + x)] = (uint8_t)byte;
-        }
+        for (size_t p = 0; p < n; p++)
+            frame->coverage[p] = (uint8_t)(lowest[p] >> (8 * k));
         stored = fl_mask_store_put(surround->planes, lowest_plane(surround, k), frame->number,
                                    frame->coverage, error);
-        memset(frame->coverage, 0, fl_rect_pixels(page));
     }
+    memset(frame->coverage, 0, n);
     return stored;
 }
 

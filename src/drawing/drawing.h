@@ -43,7 +43,7 @@ typedef struct FlRegion {
     int n_present;    // frames in which it is drawn
     int first_frame;  // index of the first of them
     double area_px;   // mean area over those frames
-    bool stays;       // from its first frame on it spans the page from side to side, and rests
+    bool stays;       // spans the page from its first frame on, rests, and nothing moves below it
     int n_leaves;     // most leaves it had in a frame
     bool paintable;   // false: drawn unpainted over the paint (strokes, shading overlays)
     int rule;         // index of the rule that made the region; -1: no rule did

@@ -291,16 +291,52 @@ static void add_part(Place *place, const FlSurveyPart *part)
     place->area_px += part->area_px;
 }
 
-/** Says if a region spans the page from side to side, and is where it was, as large as it was. */
-static bool stays(const Place *first, const Place *now, const FlPageSize *page)
+/** How a region lies in the film. */
+typedef struct Course {
+    Place first, all; // in the first frame that has it; over all frames
+    bool spans;       // in every frame that has it, from side to side of the page
+    bool rests;       // where it was, as large as it was
+} Course;
+
+static bool spans(const float box[4], const FlPageSize *page)
+{
+    return (box[0] < 1 && box[2] > (float)page->width - 1) ||
+           (box[1] < 1 && box[3] > (float)page->height - 1);
+}
+
+static bool is_held(const Place *first, const Place *now)
 {
     bool held = fabsf(now->area_px - first->area_px) < 1e-3f * first->area_px;
     for (int k = 0; k < 4; k++)
         held = held && fabsf(now->sides[k] - first->sides[k]) < HELD_PX;
     for (int k = 0; k < 2; k++)
         held = held && fabsf(now->middle[k] - first->middle[k]) < HELD_PX;
-    return held && ((now->box[0] < 1 && now->box[2] > (float)page->width - 1) ||
-                    (now->box[1] < 1 && now->box[3] > (float)page->height - 1));
+    return held;
+}
+
+static void follow(Course *course, const Place *now, const FlPageSize *page, bool first)
+{
+    if (first)
+        *course = (Course){*now, *now, true, true};
+    course->spans = course->spans && spans(now->box, page);
+    course->rests = course->rests && is_held(&course->first, now);
+    for (int k = 0; k < 2 && now->area_px > 0; k++) {
+        course->all.box[k] = MIN(course->all.box[k], now->box[k]);
+        course->all.box[k + 2] = MAX(course->all.box[k + 2], now->box[k + 2]);
+    }
+}
+
+/** Says if a region is ground: what moves below it would mark what hides it. */
+static bool stays(const Course *courses, guint region)
+{
+    const float *own = courses[region].all.box;
+    bool ground = courses[region].spans && courses[region].rests;
+    for (guint r = 0; r < region && ground; r++) {
+        const float *box = courses[r].all.box;
+        ground = courses[r].rests || box[2] < own[0] || box[0] > own[2] || box[3] < own[1] ||
+                 box[1] > own[3];
+    }
+    return ground;
 }
 
 /** Counts frames, leaves and area of the regions. */
@@ -308,7 +344,8 @@ static void measure(FlDrawing *drawing, const FlSurvey *survey)
 {
     const guint n = drawing->regions->len;
     g_autofree int *leaves = g_new(int, n + 1);
-    g_autofree Place *first = g_new0(Place, n + 1), *now = g_new(Place, n + 1);
+    g_autofree Place *now = g_new(Place, n + 1);
+    g_autofree Course *courses = g_new0(Course, n + 1);
     for (int t = 0; t < survey->n_frames; t++) {
         memset(leaves, 0, n * sizeof *leaves);
         memset(now, 0, n * sizeof *now);
@@ -322,14 +359,16 @@ static void measure(FlDrawing *drawing, const FlSurvey *survey)
         for (guint r = 0; r < n; r++) {
             FlRegion *region = &g_array_index(drawing->regions, FlRegion, r);
             if (leaves[r] > 0 && region->n_present++ == 0)
-                region->first_frame = t, region->stays = true, first[r] = now[r];
-            region->stays = region->stays && stays(&first[r], &now[r], &survey->frame[t].page);
+                region->first_frame = t;
+            if (region->n_present > 0)
+                follow(&courses[r], &now[r], &survey->frame[t].page, region->first_frame == t);
             region->n_leaves = MAX(region->n_leaves, leaves[r]);
         }
     }
     for (guint r = 0; r < n; r++) {
         FlRegion *region = &g_array_index(drawing->regions, FlRegion, r);
         region->area_px /= MAX(region->n_present, 1);
+        region->stays = stays(courses, r);
     }
 }
 
