@@ -150,6 +150,10 @@ static void smil_transforms_and_follows_paths(void)
     assert_at("<path id='p' d='M0 0h8'/><rect id='a'><animateMotion dur='2s'><mpath "
               "href='#p'/></animateMotion></rect>",
               1, "transform", "translate(4,0) rotate(0)");
+#define CORNERS(mode) RECT("<animateMotion values='0 0;8 0;8 2' dur='3s' calcMode='" mode "'/>")
+    assert_at(CORNERS("discrete"), 2, "transform", "translate(8,1.999999) rotate(0)");
+    assert_at(CORNERS("linear"), .75, "transform", "translate(4,0) rotate(0)");
+    assert_at(CORNERS("paced"), .75, "transform", "translate(2.5,0) rotate(0)");
     assert_at(RECT("<animateTransform attributeName='transform' to='8, 4' dur='1s'/>"), .5,
               "transform", "translate(4 2)");
     assert_at(RECT("<animateMotion path='M0 0v4' dur='1s' repeatCount='2' accumulate='sum'/>"), 1.5,
@@ -195,6 +199,9 @@ static void css_has_its_values(void)
                   "scale(3)}}"
                   "#a{animation:k 1s linear}"),
               .5, "transform", "matrix(2, 0, 0, 2, 5, 0)");
+    assert_at(CSS("@keyframes k{from{transform:rotate(90deg)}to{transform:rotate(-90deg) scale(1)}}"
+                  "#a{animation:k 1s linear}"),
+              .5, "transform", "matrix(1, 0, 0, 1, 0, 0)");
     assert_at(CSS("@keyframes k{from{transform:translateX(10px)}to{transform:matrix(1,0,0,1,20,0)}}"
                   "#a{animation:k 1s linear}"),
               .5, "transform", "matrix(1, 0, 0, 1, 15, 0)");
@@ -211,6 +218,11 @@ static void css_has_its_values(void)
 #define ADDED(rules) CSS("@keyframes k{to{" rules ";animation:k 1s;animation-composition:add}")
     assert_at(ADDED("x:10px}}#a{animation-timing-function:linear;x:5px"), 0, "x", "5px");
     assert_at(ADDED("x:10px}}#a{x:5px"), .999999, "x", "15px");
+    assert_at(ADDED("x:10px}}#a{x:5%"), .999999, "x", "15");
+    assert_at(CSS("@keyframes k{to{x:9px}}#a{x:4px;animation:k 1s;animation-timeline:scroll()}"),
+              .5, "x", "4px");
+    assert_at(CSS("@keyframes k{0%{display:none}}#a{animation:k 1s linear}"), .1, "display",
+              "inline");
     assert_at(ADDED("translate:4px 8px}}#a{translate:1px"), .999999, "transform",
               "matrix(1, 0, 0, 1, 5, 8)");
     assert_at(

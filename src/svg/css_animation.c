@@ -14,16 +14,18 @@ typedef enum Longhand {
     FILL,
     STATE,
     COMPOSITION,
+    TIMELINE,
     N_LONGHANDS
 } Longhand;
 
 static const char *const names[N_LONGHANDS] = {
     "animation-name",      "animation-duration",        "animation-timing-function",
     "animation-delay",     "animation-iteration-count", "animation-direction",
-    "animation-fill-mode", "animation-play-state",      "animation-composition"};
+    "animation-fill-mode", "animation-play-state",      "animation-composition",
+    "animation-timeline"};
 
-static const char *const initial[N_LONGHANDS] = {"none",   "0s",   "ease",    "0s",     "1",
-                                                 "normal", "none", "running", "replace"};
+static const char *const initial[N_LONGHANDS] = {"none",   "0s",   "ease",    "0s",      "1",
+                                                 "normal", "none", "running", "replace", "auto"};
 
 struct FlCssAnimations {
     char **list[N_LONGHANDS]; // NULL: not said
@@ -238,6 +240,8 @@ static char *between(const GArray *frames, const char *property, double p, const
         text = fl_interpolate_words(property, from, to, q);
     else if (strcmp(property, "visibility") == 0 && q > 0 && q < 1)
         text = g_strdup(strcmp(from, "visible") == 0 ? from : to);
+    else if (strcmp(property, "display") == 0 && q > 0 && q < 1)
+        text = g_strdup(strcmp(from, "none") == 0 ? to : from);
     else if (*from && *to && (typed || strncmp(property, "--", 2) != 0))
         text = fl_interpolate(from, to, q);
     return text ? text : g_strdup(q < .5 ? from : to);
@@ -286,7 +290,7 @@ void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet
         const GArray *frames =
             g_hash_table_lookup(sheet->keyframes, plain ? plain : animations->list[NAME][i]);
         double p;
-        if (!frames)
+        if (!frames || strcmp(longhand(animations, TIMELINE, i), "auto") != 0) // nothing scrolls
             continue;
         if (length)
             add_length(animations, i, length);

@@ -230,9 +230,20 @@ static bool is_modern(const char *colour)
            !g_str_has_prefix(colour, "hsl") && !g_str_has_prefix(colour, "hwb");
 }
 
+/** The sum of two texts, number by number, or of lengths in different units; NULL: neither. */
+static char *weighted_sum(const char *a, const char *b, double p, double q)
+{
+    double distance;
+    char *text = combine(a, b, p, q, &distance);
+    if (text || !is_length(a) || !is_length(b))
+        return text;
+    g_autofree char *wa = fl_css_number_text(p), *wb = fl_css_number_text(q);
+    return g_strdup_printf("calc((%s) * %s + (%s) * %s)", a, wa, b, wb);
+}
+
 char *fl_interpolate(const char *a, const char *b, double p)
 {
-    double ca[4], cb[4], distance;
+    double ca[4], cb[4];
     if (is_modern(a) || is_modern(b)) {
         g_autofree char *share = fl_css_number_text(CLAMP(p, 0, 1) * 100);
         g_autofree char *mix = g_strdup_printf("color-mix(in oklab, %s, %s %s%%)", a, b, share);
@@ -242,22 +253,18 @@ char *fl_interpolate(const char *a, const char *b, double p)
     }
     if (colour_parts(a, ca) && colour_parts(b, cb))
         return mix_colours(ca, cb, p);
-    char *text = combine(a, b, 1 - p, p, &distance);
-    if (text || !is_length(a) || !is_length(b))
-        return text;
-    g_autofree char *wa = fl_css_number_text(1 - p), *wb = fl_css_number_text(p);
-    return g_strdup_printf("calc((%s) * %s + (%s) * %s)", a, wa, b, wb);
+    return weighted_sum(a, b, 1 - p, p);
 }
 
 char *fl_add_values(const char *a, const char *b, double n)
 {
-    double ca[4], cb[4], distance;
+    double ca[4], cb[4];
     if (colour_parts(a, ca) && colour_parts(b, cb)) {
         for (int i = 0; i < 3; i++)
             ca[i] = CLAMP(ca[i] + n * cb[i], 0, 255);
         return mix_colours(ca, ca, 0);
     }
-    return combine(a, b, 1, n, &distance);
+    return weighted_sum(a, b, 1, n);
 }
 
 double fl_value_distance(const char *a, const char *b)
@@ -383,8 +390,9 @@ static char *mix_matrices(const char *a, const char *b, double p, const FlCssUni
         return NULL;
     if (!take_apart(ma, &x) || !take_apart(mb, &y))
         return g_strdup(p < .5 ? a : b);
-    double turn = y.turn - x.turn; // the shorter way, clockwise for half a turn
-    turn -= 2 * G_PI * ceil(turn / (2 * G_PI) - .5);
+    double turn = y.turn - x.turn; // the shorter way; half a turn as it is
+    if (fabs(turn) > G_PI + 1e-9)
+        turn -= copysign(2 * G_PI, turn);
     const Parts between = {x.x + (y.x - x.x) * p,    x.y + (y.y - x.y) * p,
                            x.turn + turn * p,        x.sx + (y.sx - x.sx) * p,
                            x.sy + (y.sy - x.sy) * p, x.skew + (y.skew - x.skew) * p};

@@ -228,9 +228,9 @@ static void apply_transform(const FlAnimation *a, double seconds)
     fl_set_attribute(a->target, a->attribute, all);
 }
 
-/** The path of animateMotion: its own, that of an <mpath>, or lines between its values; NULL: none.
- */
-static FlOutlines *motion_path(const FlTimeline *timeline, const FlAnimation *a)
+/** The path of animateMotion: its own, that of an <mpath>, or lines between its values, *corners,
+ * to be freed; NULL: none. */
+static FlOutlines *motion_path(const FlTimeline *timeline, const FlAnimation *a, char ***corners)
 {
     for (const xmlNode *child = a->node->children; child; child = child->next) {
         if (!fl_is(child, "mpath"))
@@ -243,31 +243,34 @@ static FlOutlines *motion_path(const FlTimeline *timeline, const FlAnimation *a)
     if (path)
         return fl_css_outlines_of_path(path);
     bool adds = true;
-    g_auto(GStrv) values = values_of(a, "0,0", &adds);
-    g_autofree char *joined = g_strjoinv(" L", values), *d = g_strconcat("M", joined, NULL);
+    *corners = values_of(a, "0,0", &adds);
+    g_autofree char *joined = g_strjoinv(" L", *corners), *d = g_strconcat("M", joined, NULL);
     return *joined ? fl_css_outlines_of_path(d) : NULL;
 }
 
-/** keyPoints at a share of a round, else the share itself. */
-static double key_point(const FlAnimation *a, double share)
+/** The share of a path at a share of a round: by keyPoints, by the values that are its corners, or
+ * the same. `corners`: may be NULL. */
+static double key_point(const FlAnimation *a, char **corners, double share)
 {
     g_autofree char *text = fl_trimmed_attribute(a->node, "keyPoints"),
                     *written = fl_trimmed_attribute(a->node, "calcMode");
+    const char *mode = written ? written : corners ? "paced" : "linear";
     g_auto(GStrv) points = list_of(text);
-    const int n = (int)g_strv_length(points);
-    const char *mode = written ? written : "linear";
-    g_autofree char *times_text = fl_trimmed_attribute(a->node, "keyTimes");
+    char **list = text ? points : corners;
+    const int n = list ? (int)g_strv_length(list) : 0;
     double control[4];
     int at;
-    if (n < 2 || !text)
+    if (n < 2 || (!text && strcmp(mode, "paced") == 0))
         return strcmp(mode, "spline") == 0 && spline_of(a, 0, control) ? fl_ease(control, share)
                                                                        : share;
-    g_autofree double *times = key_times(a, points, n, false, strcmp(mode, "discrete") == 0);
+    g_autofree double *times = key_times(a, list, n, false, strcmp(mode, "discrete") == 0);
+    g_autofree double *place = key_times(a, list, n, true, false);
     if (!times)
         return share;
     const double p = place_in_round(a, times, n, share, mode, &at);
-    const double from = g_ascii_strtod(points[at], NULL);
-    return at + 1 < n ? from + p * (g_ascii_strtod(points[at + 1], NULL) - from) : from;
+    for (int i = 0; i < n && text; i++)
+        place[i] = g_ascii_strtod(points[i], NULL);
+    return at + 1 < n ? place[at] + p * (place[at + 1] - place[at]) : place[at];
 }
 
 /** The place at a share of a path, and the direction there; false: it is no path. */
@@ -283,7 +286,8 @@ static bool place_at(const FlOutlines *path, double share, FlPoint *place, doubl
 static void apply_motion(const FlTimeline *timeline, const FlAnimation *a, double seconds)
 {
     const FlInterval *interval = fl_interval_at(a, seconds);
-    g_autoptr(FlOutlines) path = interval ? motion_path(timeline, a) : NULL;
+    g_auto(GStrv) corners = NULL;
+    g_autoptr(FlOutlines) path = interval ? motion_path(timeline, a, &corners) : NULL;
     g_autofree char *rotate = fl_trimmed_attribute(a->node, "rotate");
     const char *own = fl_attribute(a->target, "transform");
     g_autofree char *accumulate = fl_trimmed_attribute(a->node, "accumulate");
@@ -291,7 +295,7 @@ static void apply_motion(const FlTimeline *timeline, const FlAnimation *a, doubl
     FlPoint at, end;
     if (!path)
         return;
-    const double share = key_point(a, fl_share_of_round(a, interval, seconds, &rounds));
+    const double share = key_point(a, corners, fl_share_of_round(a, interval, seconds, &rounds));
     if (!place_at(path, 1, &end, &direction) || !place_at(path, share, &at, &direction))
         return;
     if (g_strcmp0(accumulate, "sum") == 0)
