@@ -477,6 +477,27 @@ static void gaps_of_librsvg_are_filled(void)
     g_assert_nonnull(strstr(text, "svg+xml;base64,"));
 }
 
+static void a_frame_of_the_page_is_told(void)
+{
+    static const struct {
+        const char *style;
+        int told;
+    } pages[] = {{"padding:5px", 1},
+                 {"border:1px solid #ddd", 1},
+                 {"padding:0;border:none", 0},
+                 {"all:unset", 0},
+                 {"", 0}};
+    for (size_t i = 0; i < G_N_ELEMENTS(pages); i++) {
+        g_autoptr(FlWarnings) warnings = fl_warnings_new();
+        g_autofree char *content =
+            g_strdup_printf("<style>:root{%s}</style><path id='a' style='border:1px solid;padding:"
+                            "1px' d='M0 0h1'/>",
+                            pages[i].style);
+        g_free(computed(content, "a", "fill", warnings));
+        g_assert_cmpint(fl_warnings_count(warnings), ==, pages[i].told);
+    }
+}
+
 static void each_kind_that_is_left_out_is_told_once(void)
 {
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
@@ -568,6 +589,7 @@ int main(int argc, char **argv)
     TEST(what_use_shows_has_the_variables_of_use);
     TEST(images_keep_their_shape);
     TEST(gaps_of_librsvg_are_filled);
+    TEST(a_frame_of_the_page_is_told);
     TEST(each_kind_that_is_left_out_is_told_once);
     TEST(turned_blurs_beyond_the_bound_are_told);
     TEST(values_that_librsvg_leaves_out_are_told);

@@ -359,6 +359,18 @@ static const char *apply_background(GHashTable *effects, xmlNode *node, const Fl
     return NULL;
 }
 
+/** Returns: a property that makes the page smaller than its drawing; NULL: none. */
+static const char *frame_of_page(GHashTable *effects, const xmlNode *node)
+{
+    static const char *const names[] = {"border", "padding"};
+    for (int i = 0; i < 2 && fl_is_root(node); i++) {
+        const char *value = value_of(effects, names[i]);
+        if (value && strpbrk(value, "123456789") && *value != '0' && !strstr(value, "none"))
+            return names[i];
+    }
+    return NULL;
+}
+
 static const char *apply_path(GHashTable *effects, xmlNode *node)
 {
     const char *value = get(effects, "d");
@@ -454,7 +466,12 @@ const char *fl_css_effects_apply(GHashTable *effects, xmlNode *node, const FlCss
     apply_path_length(node, units);
     apply_light(node);
     fl_set_attribute(node, "transform-origin", NULL);
-    return problem ? problem : clip ? clip : transform ? transform : mask ? mask : background;
+    return problem      ? problem
+           : clip       ? clip
+           : transform  ? transform
+           : mask       ? mask
+           : background ? background
+                        : frame_of_page(effects, node);
 }
 
 /* ---- strokes that do not scale --------------------------------------------------------------- */
