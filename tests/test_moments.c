@@ -153,6 +153,9 @@ static void smil_transforms_and_follows_paths(void)
 #define CORNERS(mode) RECT("<animateMotion values='0 0;8 0;8 2' dur='3s' calcMode='" mode "'/>")
     assert_at(CORNERS("discrete"), 2, "transform", "translate(8,1.999999) rotate(0)");
     assert_at(CORNERS("linear"), .75, "transform", "translate(4,0) rotate(0)");
+#define STAYS(values) RECT("<animateMotion values='" values "' dur='3s'/>")
+    assert_at(STAYS("4 4;4 4;8 4"), 0, "transform", "translate(4,4) rotate(0)");
+    assert_at(STAYS("4 4;4 4"), 1, "transform", "translate(4,4) rotate(0)");
     assert_at(CORNERS("paced"), .75, "transform", "translate(2.5,0) rotate(0)");
     assert_at(RECT("<animateTransform attributeName='transform' to='8, 4' dur='1s'/>"), .5,
               "transform", "translate(4 2)");

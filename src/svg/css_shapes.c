@@ -114,6 +114,8 @@ static double walk_along(const FlOutlines *outlines, double target, FlPoint *pla
 {
     const FlAffine none = FL_AFFINE_NONE;
     double length = 0;
+    *place = outlines->n_cubics ? outlines->cubic[0].p[0] : (FlPoint){0, 0};
+    *direction = 0;
     for (int i = 0; i < outlines->n_cubics; i++) {
         const FlCubic *cubic = &outlines->cubic[i];
         const int n = 64;
@@ -127,7 +129,7 @@ static double walk_along(const FlOutlines *outlines, double target, FlPoint *pla
                 *direction = atan2(to.y - from.y, to.x - from.x) * 180 / G_PI;
             }
             length += step;
-            if (length >= target)
+            if (step > 0 && length >= target)
                 return target;
             from = to;
         }
