@@ -39,6 +39,23 @@ static void names_are_made_from_patterns(void)
     g_assert_false(fl_output_is_pattern("100%%.png"));
 }
 
+static void assert_output(const char *wanted, bool pattern, const char *expected)
+{
+    g_autofree char *output = fl_output_of_film(wanted, "_%04d.png", "a%", pattern);
+    g_autofree char *name = pattern ? fl_output_name(output, 3, NULL, NULL) : g_strdup(output);
+    g_assert_cmpstr(name, ==, expected);
+}
+
+/* A percent sign in the name of the drawing, or of a folder, is no frame number. */
+static void test_output_of_film(void)
+{
+    assert_output(NULL, true, "fluidy/a%_0003.png");
+    assert_output("100%/", true, "100%/a%_0003.png");
+    assert_output("%03d_{name}.png", true, "003_a%.png");
+    assert_output("100%/", false, "100%/a%_%04d.png");
+    assert_output("{name}%.mov", false, "a%%.mov");
+}
+
 /* The names of which `text`, as input, has the numbers. */
 static void assert_matches(const char *text, const char *const *names, const int *numbers)
 {
@@ -122,6 +139,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
 #define TEST(name) g_test_add_func("/pattern/" #name, name)
+    TEST(test_output_of_film);
     TEST(names_are_made_from_patterns);
     TEST(names_are_read_by_the_patterns_that_make_them);
     TEST(all_spellings_of_a_pattern_have_one_text);

@@ -390,13 +390,13 @@ typedef bool WriteFrame(const Subject *subject, int frame, const char *pattern, 
 /* The names of the pictures, free if they must be: known before the drawing is read. */
 static char *pattern_of(const Subject *subject, const char *what, GError **error)
 {
-    const char *wanted = subject->options.output;
     g_autoptr(FlSequence) sequence = fl_sequence_from_options(&subject->options, error);
     if (!sequence)
         return NULL;
-    g_autofree char *usual = g_strdup_printf("fluidy/{name}_%s_%%04d.png", what);
+    g_autofree char *tail = g_strdup_printf("_%s_%%04d.png", what);
     g_autofree char *are = g_strdup_printf("%ss are", what);
-    g_autofree char *pattern = fl_output_of_film(wanted ? wanted : usual, sequence->name);
+    g_autofree char *pattern =
+        fl_output_of_film(subject->options.output, tail, sequence->name, true);
     if (!fl_png_named(pattern, are, error))
         return NULL;
     for (int f = 0; subject->options.overwrite != FL_OVERWRITE_YES && f < sequence->n; f++) {

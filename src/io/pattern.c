@@ -175,10 +175,32 @@ char *fl_output_name(const char *text, int number, const char *region, GError **
     return g_strjoinv(region, parts);
 }
 
-char *fl_output_of_film(const char *pattern, const char *film)
+bool fl_output_is_folder(const char *wanted)
 {
-    g_auto(GStrv) parts = g_strsplit(pattern, "{name}", -1);
-    return g_strjoinv(film, parts);
+    return !wanted || g_str_has_suffix(wanted, "/") || g_file_test(wanted, G_FILE_TEST_IS_DIR);
+}
+
+/** A text as it stands, as part of a pattern or of a plain name. */
+static GString *part_of(bool pattern, const char *text)
+{
+    GString *part = g_string_new(NULL);
+    if (pattern)
+        append_literal(part, text);
+    else
+        g_string_append(part, text);
+    return part;
+}
+
+char *fl_output_of_film(const char *wanted, const char *tail, const char *film, bool pattern)
+{
+    const bool folder = fl_output_is_folder(wanted);
+    g_autoptr(GString) path = part_of(pattern && folder, wanted ? wanted : "fluidy/");
+    g_autoptr(GString) name = part_of(pattern, film);
+    if (folder)
+        g_string_append_printf(path, "%s{name}%s", g_str_has_suffix(path->str, "/") ? "" : "/",
+                               tail);
+    g_string_replace(path, "{name}", name->str, 0);
+    return g_string_free(g_steal_pointer(&path), FALSE);
 }
 
 /* ---- ranges of frames ------------------------------------------------------------------------ */

@@ -41,8 +41,15 @@ void fl_pattern_clear(FlPattern *pattern);
  */
 char *fl_output_name(const char *pattern, int number, const char *region, GError **error);
 
-/** The pattern with the drawing's name in place of {name}; to be freed. */
-char *fl_output_of_film(const char *pattern, const char *film);
+/** Returns: true for a folder: one that is there, a name that ends with "/", or NULL: fluidy/. */
+bool fl_output_is_folder(const char *wanted);
+
+/**
+ * The wanted output, or in a folder "{name}" and the tail, with the film's name in place of {name}.
+ * A pattern is for fl_output_name(), so percent signs of folder and film are doubled in it.
+ * Returns: to be freed.
+ */
+char *fl_output_of_film(const char *wanted, const char *tail, const char *film, bool pattern);
 
 /** Returns: true if the pattern has a frame number, so that every frame has its own file. */
 bool fl_output_is_pattern(const char *pattern);

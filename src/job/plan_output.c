@@ -41,22 +41,6 @@ FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **er
     return fl_sequence_open(&wanted, NULL, error);
 }
 
-static bool is_folder(const char *output)
-{
-    return g_str_has_suffix(output, "/") || g_file_test(output, G_FILE_TEST_IS_DIR);
-}
-
-/* The film's own name in a folder. */
-static char *default_output(const FlPlan *plan, const char *folder)
-{
-    const char *suffix = plan->out.format->suffix ? plan->out.format->suffix : ".png";
-    g_autoptr(GString) path = g_string_new(folder);
-    g_string_replace(path, "%", "%%", 0);
-    g_string_append_printf(path, "%s{name}%s%s", g_str_has_suffix(folder, "/") ? "" : "/",
-                           plan->out.format->film ? "" : "_%04d", suffix);
-    return g_string_free(g_steal_pointer(&path), FALSE);
-}
-
 /* The frames of a film lie in its folder: walk_0001.png, … beside walk.mov. */
 static char *frames_of_movie(const FlPlan *plan)
 {
@@ -81,13 +65,16 @@ static bool choose_frames(FlPlan *plan, GError **error)
 static bool name_output(FlPlan *plan, const FlSequence *sequence, GError **error)
 {
     const char *format = plan->options.format, *requested = plan->options.output;
-    const char *folder = !requested ? "fluidy" : is_folder(requested) ? requested : NULL;
-    plan->out.format = fl_sink_format(format || !folder ? format : "png", requested, error);
+    if (!format && fl_output_is_folder(requested))
+        format = "png";
+    plan->out.format = fl_sink_format(format, requested, error);
     if (!plan->out.format)
         return false;
-    g_autofree char *pattern = folder ? default_output(plan, folder) : g_strdup(requested);
-    plan->out.output = fl_output_of_film(pattern, sequence->name);
-    if (!plan->out.format->film && !fl_output_is_pattern(plan->out.output) && sequence->n > 1)
+    const bool film = plan->out.format->film;
+    const char *suffix = plan->out.format->suffix ? plan->out.format->suffix : ".png";
+    g_autofree char *tail = g_strconcat(film ? "" : "_%04d", suffix, NULL);
+    plan->out.output = fl_output_of_film(requested, tail, sequence->name, !film);
+    if (!film && !fl_output_is_pattern(plan->out.output) && sequence->n > 1)
         return fl_fail(error, FL_ERROR_USAGE,
                        "%s: one file for %d frames; expected a number in the name, such as %%04d",
                        plan->out.output, sequence->n);
@@ -111,7 +98,7 @@ static bool name_parts(FlPlan *plan, const FlSequence *sequence, GError **error)
     g_autofree char *whose = short_name(o->only_region ? o->only_region : "regions");
     g_autoptr(GString) pattern = g_string_new(o->paint ? o->paint : o->layers);
     g_string_replace(pattern, "{region}", whose, 0);
-    plan->out.output = fl_output_of_film(pattern->str, sequence->name);
+    plan->out.output = fl_output_of_film(pattern->str, "", sequence->name, true);
     plan->out.format = fl_sink_format("null", NULL, error);
     return plan->out.format != NULL;
 }

@@ -15,7 +15,10 @@
  * from 1000 on. */
 static char *hidden_file(const FlPlan *plan, bool any_digits, const char *suffix)
 {
-    g_autofree char *folder = g_path_get_dirname(plan->out.output);
+    g_autofree char *parent = g_path_get_dirname(plan->out.output);
+    g_autoptr(GString) folder = g_string_new(parent);
+    if (!plan->out.format->film)
+        g_string_replace(folder, "%%", "%", 0);
     g_auto(FlPattern) pattern = {0};
     const bool parsed = fl_pattern_parse(plan->out.output, &pattern, NULL);
     if (any_digits && pattern.width > 1)
@@ -26,7 +29,7 @@ static char *hidden_file(const FlPlan *plan, bool any_digits, const char *suffix
                                 ? g_strdup_printf(".%d-%d", plan->out.part + 1, plan->out.n_parts)
                                 : g_strdup("");
     g_autofree char *name = g_strdup_printf(".%s%s.%s", base, part, suffix);
-    return g_build_filename(folder, name, NULL);
+    return g_build_filename(folder->str, name, NULL);
 }
 
 static bool may_overwrite(const FlPlan *plan)
@@ -204,8 +207,8 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
 /* Excludes other runs with the same output, which would mix their frames. */
 static bool take_lock(FlResume *resume, const FlPlan *plan, GError **error)
 {
-    g_autofree char *folder = g_path_get_dirname(plan->out.output);
     g_autofree char *path = hidden_file(plan, true, "lock");
+    g_autofree char *folder = g_path_get_dirname(path);
     GError *lock_error = NULL;
     (void)g_mkdir_with_parents(folder, 0777); // an error is told when the record is saved
     resume->lock = fl_lock_take(path, plan->out.output, &lock_error);

@@ -33,12 +33,12 @@ typedef struct Variant {
 
 /* A kind of comparison. */
 typedef struct Kind {
-    const char *noun, *output; // in the note; the default file of the sheet
-    bool has_page;             // beside the sheet
+    const char *noun, *tail; // in the note; of the name of the sheet
+    bool has_page;           // beside the sheet
 } Kind;
 
-static const Kind styles_kind = {"style", "fluidy/{name}_styles.png", false};
-static const Kind methods_kind = {"method", "fluidy/{name}_methods.png", true};
+static const Kind styles_kind = {"style", "_styles.png", false};
+static const Kind methods_kind = {"method", "_methods.png", true};
 
 /* A comparison: the drawing and the sheet. */
 typedef struct Comparison {
@@ -76,11 +76,10 @@ static bool may_write(const Comparison *c, const char *path, GError **error)
  */
 static bool name_files(Comparison *c, const FlRenderOptions *complete, GError **error)
 {
-    const char *wanted = c->options.output;
     g_autoptr(FlSequence) sequence = fl_sequence_from_options(complete, error);
     if (!sequence)
         return false;
-    c->path = fl_output_of_film(wanted ? wanted : c->kind->output, sequence->name);
+    c->path = fl_output_of_film(c->options.output, c->kind->tail, sequence->name, false);
     if (!fl_png_named(c->path, "sheets are", error))
         return false;
     g_autofree char *stem = g_strndup(c->path, strlen(c->path) - strlen(".png"));
