@@ -143,6 +143,7 @@ table() {
 2|x_%d_%d.png: *|good -o x_%d_%d.png
 2|x_{region}.png: {region} is allowed in the names of layers only|good -o x_{region}.png
 2|x_{rgion}.png: “{rgion}” is not understood; expected {region}|good --layers x_{rgion}.png
+2|x_{region}.png: one file for 2 frames; expected a number in the name*|gap --missing skip --layers x_{region}.png
 2|x_{region}.exr: layers and paint are PNG files; expected .png|good --layers x_{region}.exr
 2|x_%d_{region}: layers and paint are PNG files; *|good --paint x_%d_{region}
 2|--paint: one file for all frames; expected a number in the name*|good --paint x_{region}.png

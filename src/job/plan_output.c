@@ -62,6 +62,16 @@ static bool choose_frames(FlPlan *plan, GError **error)
     return plan->out.format != NULL;
 }
 
+/* With one name for all frames, each would replace the last. */
+static bool check_numbered(const char *pattern, const FlSequence *sequence, GError **error)
+{
+    if (!pattern || sequence->n == 1 || fl_output_is_pattern(pattern))
+        return true;
+    return fl_fail(error, FL_ERROR_USAGE,
+                   "%s: one file for %d frames; expected a number in the name, such as %%04d",
+                   pattern, sequence->n);
+}
+
 static bool name_output(FlPlan *plan, const FlSequence *sequence, GError **error)
 {
     const char *format = plan->options.format, *requested = plan->options.output;
@@ -74,11 +84,8 @@ static bool name_output(FlPlan *plan, const FlSequence *sequence, GError **error
     const char *suffix = plan->out.format->suffix ? plan->out.format->suffix : ".png";
     g_autofree char *tail = g_strconcat(film ? "" : "_%04d", suffix, NULL);
     plan->out.output = fl_output_of_film(requested, tail, sequence->name, !film);
-    if (!film && !fl_output_is_pattern(plan->out.output) && sequence->n > 1)
-        return fl_fail(error, FL_ERROR_USAGE,
-                       "%s: one file for %d frames; expected a number in the name, such as %%04d",
-                       plan->out.output, sequence->n);
-    return choose_frames(plan, error);
+    return (film || check_numbered(plan->out.output, sequence, error)) &&
+           choose_frames(plan, error);
 }
 
 /* The names of a run's regions as part of a file name; a checksum if they are long. To be freed. */
@@ -147,7 +154,8 @@ bool fl_plan_find_output(FlPlan *plan, GError **error)
 {
     const FlRenderOptions *o = &plan->options;
     g_autoptr(FlSequence) sequence = fl_sequence_from_options(o, error);
-    if (!sequence || !(plan->out.parts_only ? name_parts : name_output)(plan, sequence, error) ||
+    if (!sequence || !check_numbered(o->layers, sequence, error) ||
+        !(plan->out.parts_only ? name_parts : name_output)(plan, sequence, error) ||
         !parse_part(plan, error) || (o->part && !choose_part(plan, error)))
         return false;
     plan->request = fl_request_digest(plan, sequence);
