@@ -268,8 +268,9 @@ static void list_layers(FlComposite *composite, const FlComposeInput *input, int
             add_layer(composite, draw, g_strdup(STAIN), NO_DRAW);
         bottom = bottom && ground;
         add_layer(composite, draw, layer_name(input, draws, r), r);
+        stains += ground && !bottom; // also where there is none: each ground keeps its number
         if (ground && !bottom && fl_rect_meet(stain->box, draws->draw[r].area.box))
-            add_layer(composite, draw, g_strdup_printf(STAIN "-%d", ++stains), NO_DRAW - 1 - r);
+            add_layer(composite, draw, g_strdup_printf(STAIN "-%d", stains), NO_DRAW - 1 - r);
     }
     if (bottom)
         add_layer(composite, draw, g_strdup(STAIN), NO_DRAW);

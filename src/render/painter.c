@@ -31,11 +31,13 @@ static FlRect cropped(const FlPainter *painter)
                 painter->plan);
 }
 
-/* The picture, and, measured, the packed state, in which bare paper takes little. */
+/* The picture, and the state of a synthesis: the same picture again, and, of each px of the field,
+ * two masks and a match. */
 double fl_painter_bytes(const FlPainter *painter)
 {
     const double rect = (double)fl_rect_pixels(painter->result.rect);
-    return 10 * MIN(painter->plan->area_px, rect) + 3 * rect;
+    const int px = fl_field_px(painter->plan->style->exemplar);
+    return (6 + (2 + (double)sizeof(FlMatch)) / (px * px)) * rect;
 }
 
 /* A region that no frame shows has no paint, no guides and no room. */

@@ -363,6 +363,8 @@ bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats
         *view = synth->view;
     else
         clear_frame(synth);
+    if (!done) // its planes may be gone
+        fl_synth_state_clear(&synth->last);
     return done;
 }
 
@@ -379,5 +381,6 @@ GBytes *fl_synth_save(FlSynth *synth, GError **error)
 
 bool fl_synth_load(FlSynth *synth, GBytes *state, GError **error)
 {
+    clear_frame(synth); // a view is of the field that goes
     return fl_synth_state_unpack(&synth->last, state, &synth->exemplar->level[0], error);
 }
