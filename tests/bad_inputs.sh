@@ -149,7 +149,7 @@ table() {
 2|--paint: one file for all frames; expected a number in the name*|good --paint x_{region}.png
 2|--merge composes what --paint has written, or what ebsynth has painted *|good --merge
 1|eb/red-aa3311/out_0001.png: there is no such file; *|good --merge --ebsynth eb
-2|region red-aa3311: the engine transport has no guides for --ebsynth; *|good --engine transport --ebsynth eb
+2|region red-aa3311: the engine transport has no guides for --ebsynth; *|good -s 11 --ebsynth eb
 2|dumped/red-aa3311/clear.png: is read by this render; *|good -y -b dumped/red-aa3311/clear.png --ebsynth dumped -o y_%d.png
 2|--merge paints nothing that --report or --dump could show*|good --merge --paint {region}_%d.png --dump d
 1|gone/red-aa3311_1.png: there is no such file; --paint without --merge writes*|good --merge --paint gone/{region}_%d.png
