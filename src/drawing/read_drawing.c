@@ -294,7 +294,7 @@ static void add_part(Place *place, const FlSurveyPart *part)
 /** How a region lies in the film. */
 typedef struct Course {
     Place first, all; // in the first frame that has it; over all frames
-    bool spans;       // in every frame that has it, from side to side of the page
+    bool spans;       // in every frame from its first on, from side to side of the page
     bool rests;       // where it was, as large as it was
 } Course;
 

@@ -189,7 +189,6 @@ static bool set_tolerance(FlRule *rule, const char *value, bool overridden, GErr
     return true;
 }
 
-/* The nearest key of a region section, the match-* among them. */
 static bool is_project_key(const char *key)
 {
     const FlOption *option = fl_option_find(FL_SCOPE_RENDER, key);
@@ -197,6 +196,7 @@ static bool is_project_key(const char *key)
            (option && option->section == FL_SECTION_PROJECT);
 }
 
+/* The nearest key of a region section, the match-* among them, or the section of a project's. */
 static bool unknown_key(const char *section, const char *key, bool matches, GError **error)
 {
     if (is_project_key(key))

@@ -18,8 +18,8 @@ bool fl_is(const xmlNode *node, const char *name)
 
 bool fl_is_one_of(const xmlNode *node, const char *names)
 {
-    return fl_css_has_word(names, (const char *)node->name) &&
-           fl_is(node, (const char *)node->name);
+    return node->type == XML_ELEMENT_NODE && fl_css_has_word(names, (const char *)node->name) &&
+           fl_is(node, (const char *)node->name); // CDATA has no name
 }
 
 xmlNode *fl_element_around(const xmlNode *node)

@@ -22,8 +22,7 @@ static int count_elements(const xmlNode *node)
     return n;
 }
 
-/* ---- filters
- * ------------------------------------------------------------------------------------- */
+/* ---- filters --------------------------------------------------------------------------------- */
 
 /** Gives a blur the two deviations that the map m, as librsvg applies it, makes equal. */
 static void turn_blur(xmlNode *step, const FlAffine *m)
