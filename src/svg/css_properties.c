@@ -79,6 +79,18 @@ char *fl_css_word(const FlCssProperty *property, const char *value)
     return NULL;
 }
 
+/** Returns: true for several lines at once: "underline overline". */
+static bool is_words(const FlCssProperty *property, const char *value)
+{
+    g_auto(GStrv) part = fl_css_split(value, ' ');
+    bool good = true;
+    for (int i = 0; part[i] && good; i++) {
+        g_autofree char *word = fl_css_word(property, part[i]);
+        good = word != NULL;
+    }
+    return good;
+}
+
 bool fl_css_is_valid(const FlCssProperty *property, const char *value)
 {
     if (!*value)
@@ -90,7 +102,8 @@ bool fl_css_is_valid(const FlCssProperty *property, const char *value)
         property->kind == FL_CSS_PAINT ? fl_css_colour_with(value, "black") : NULL;
     g_autofree char *word = fl_css_word(property, value);
     if (word || (property->words && property->kind == FL_CSS_TEXT))
-        return word != NULL;
+        return word ||
+               (strcmp(property->name, "text-decoration") == 0 && is_words(property, value));
     if (fl_css_has_word("auto none normal", value))
         return true;
     switch (property->kind) {

@@ -180,7 +180,9 @@ static void check_text(const Lint *lint, const xmlNode *node)
         warn(lint, node, "places and turns of single letters are left out");
     if (fl_attribute(node, "textLength"))
         warn(lint, node, "textLength is left out: the text has its own width");
-    if (xmlHasProp((xmlNode *)node, (xmlChar *)"word-spacing"))
+    const char *spacing = fl_attribute(node, "word-spacing");
+    char *unit = NULL;
+    if (spacing && g_ascii_strtod(spacing, &unit) != 0 && !*unit) // with a unit it was told before
         warn(lint, node, "word-spacing is left out");
 }
 

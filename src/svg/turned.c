@@ -50,8 +50,10 @@ static void turn_blur(xmlNode *step, const FlAffine *m)
 static bool is_upright(const xmlNode *step)
 {
     const xmlNode *next = xmlNextElementSibling((xmlNode *)step);
-    if (fl_is(step, "feFlood") && next && fl_is(next, "feComposite"))
-        return false; // which cuts it
+    g_autofree char *opacity = fl_property(step, "flood-opacity");
+    if (fl_is(step, "feFlood") &&
+        ((opacity && g_ascii_strtod(opacity, NULL) == 0) || (next && fl_is(next, "feComposite"))))
+        return false; // there is none, or that cuts it
     return xmlHasProp((xmlNode *)step, (xmlChar *)"width") ||
            fl_is_one_of(step, "feTurbulence feTile feImage feDisplacementMap feFlood "
                               "feConvolveMatrix");
