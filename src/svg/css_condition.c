@@ -97,7 +97,7 @@ static bool has_feature(const FlCssPage *page, const char *text)
 {
     g_autoptr(GRegex) form = g_regex_new("^\\s*(?:([^<>=:]+?)\\s*([<>]=?|=))?\\s*([a-z][a-z-]*)\\s*"
                                          "(?:([<>]=?|=|:)\\s*(.+?)\\s*)?$",
-                                         G_REGEX_DOTALL, 0, NULL);
+                                         G_REGEX_DOTALL | G_REGEX_RAW, 0, NULL);
     g_autoptr(GMatchInfo) match = NULL;
     if (!g_regex_match(form, text, 0, &match))
         return false;
