@@ -175,7 +175,8 @@ result $? '--list-styles is a list and a sheet'
 result $? 'the name of the drawing can stand in that of the output'
 mkdir 'held 5%' && "$program" whole -s 01 --detail draft -f 1 -q -o 'held 5%' >out 2>err &&
     "$program" whole -s 01 --detail draft -f 1 -q -o held/folder/ >>out 2>>err &&
-    [ -s 'held 5%/w_0001.png' ] && [ -s held/folder/w_0001.png ]
+    "$program" whole -s 01 --detail draft -q -o 'held 5%' --format gif --no-frames >>out 2>>err &&
+    [ -s 'held 5%/w_0001.png' ] && [ -s held/folder/w_0001.png ] && [ -s 'held 5%/w.gif' ]
 result $? 'a folder as output is filled'
 refuses 'a sheet that is no PNG is refused' 2 'styles.jpg: sheets are PNG files; *' --list-styles -o styles.jpg
 refuses 'a sheet that exists stays' 1 'styles.png: already exists*' --list-styles -o styles.png

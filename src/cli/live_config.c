@@ -277,7 +277,7 @@ void fl_live_config_keep(FlLiveConfig *config)
 
 guint fl_live_config_revert(FlLiveConfig *config)
 {
-    const guint n = config->n - config->kept;
+    const guint n = config->n - MIN(config->n, config->kept); // good ones may be taken back
     if (n > 0)
         g_ptr_array_set_size(config->choices, (int)(config->n = config->kept));
     apply_choices(config);
