@@ -18,7 +18,7 @@
 #define BYTES_OF_WINDOW 50.0            // of a pixel, measured: with rotations
 #define BYTES_OF_REST 9.0               // while it is loaded
 #define WINDOW_BYTES (1024.0 * 1048576) // of one style
-#define UNUSED_BYTES (384.0 * 1048576)  // of styles that the plan no longer uses
+#define UNUSED_BYTES (128.0 * 1048576)  // of styles that the plan no longer uses
 #define MOST_UNUSED 24                  // styles; a page shows samples of all
 
 struct FlStyleCache {

@@ -216,7 +216,8 @@ static void ask(FlFilm *film, Take *take)
  * options. */
 static bool follow_options(FlFilm *film, Take *take, GError **error)
 {
-    const size_t memory = (size_t)MIN(fl_limit(FL_LIMIT_MEMORY) / 8, 512) << 20;
+    const int most = take == &film->draft ? 64 : 192; // MiB of paint
+    const size_t memory = (size_t)MIN(fl_limit(FL_LIMIT_MEMORY) / 8, most) << 20;
     const FlRenderOptions before = take->asked;
     const FlDrawing *read = take->open ? take->frames.plan->shapes.drawing : NULL;
     ask(film, take);
