@@ -87,7 +87,7 @@ static void upscaling_keeps_a_rotated_field_coherent(void)
     }
 }
 
-static void a_region_at_rest_has_a_view_though_its_picture_had_none(void)
+static void a_region_at_rest_has_its_picture_and_a_view_though_that_had_none(void)
 {
     g_autofree FlParams *params = default_params();
     g_autoptr(FlStyle) style = small_style();
@@ -104,7 +104,10 @@ static void a_region_at_rest_has_a_view_though_its_picture_had_none(void)
     memset(now.flow, 0, 2 * sizeof(float) * 48 * 48);
     now.has_motion = false;
     g_assert_true(fl_synth_frame(synth, &now, rgb, NULL, NULL, NULL));
+    g_autofree uint8_t *first = g_memdup2(rgb, 3 * 48 * 48);
+    memset(rgb, 0, 3 * 48 * 48);
     g_assert_true(fl_synth_frame(synth, &now, rgb, NULL, &view, NULL));
+    g_assert_true(memcmp(rgb, first, 3 * 48 * 48) == 0);
     g_assert_nonnull(view.nnf);
     g_assert_nonnull(view.nnf->match);
     g_assert_cmpint(view.rect.width, ==, view.nnf->width);
@@ -161,7 +164,7 @@ int main(int argc, char **argv)
     g_test_add_func("/synth/upscaling-keeps-a-rotated-field-coherent",
                     upscaling_keeps_a_rotated_field_coherent);
     g_test_add_func("/synth/a-region-at-rest-has-a-view-though-its-picture-had-none",
-                    a_region_at_rest_has_a_view_though_its_picture_had_none);
+                    a_region_at_rest_has_its_picture_and_a_view_though_that_had_none);
     g_test_add_func("/synth/depth-counts-from-where-paint-begins",
                     depth_counts_from_where_paint_begins);
     g_test_add_func("/synth/the-middle-of-a-large-shape-is-trusted-by-the-carry",
