@@ -77,6 +77,11 @@ result $? 'a broken drawing is one line, and the watch goes on'
 drawing film/w_0002.svg 56 6
 follows && errors 1
 result $? 'until it is mended'
+cp -r film again && rm -r film
+until_so grep -q 'film: no such file' told && until_so waits
+drawing again/w_0002.svg 56 2 && mv again film
+follows
+result $? 'a folder that was removed is found when it is back'
 printf '[defaults]\nw-tmp = 9\n' >one.conf
 until_so errors 2 && until_so waits
 result $? 'so is a broken config'

@@ -17,7 +17,8 @@ struct FlFileWatch {
 
 typedef struct Folder {
     FlFileWatch *watch;
-    GFileMonitor *monitor; // NULL: there is no such folder
+    GFile *file;
+    GFileMonitor *monitor; // NULL: it cannot be watched
     GHashTable *names;     // of files that are read, a set
     GPtrArray *patterns;   // GPatternSpec: of more of them
 } Folder;
@@ -28,6 +29,7 @@ static void folder_free(void *data)
     if (folder->monitor)
         g_file_monitor_cancel(folder->monitor);
     g_clear_object(&folder->monitor);
+    g_object_unref(folder->file);
     g_hash_table_unref(folder->names);
     g_ptr_array_unref(folder->patterns);
     g_free(folder);
@@ -52,11 +54,12 @@ static gint64 *new_time(void)
 static void take_event(const Folder *folder, GFile *file, bool opens)
 {
     g_autofree char *name = file ? g_file_get_basename(file) : NULL;
-    if (!name || !is_read(folder, name))
+    const bool whole = file && g_file_equal(file, folder->file); // is there again, or gone
+    if (!name || (!whole && !is_read(folder, name)))
         return;
     FlFileWatch *watch = folder->watch;
     char *path = g_file_get_path(file);
-    if (opens)
+    if (opens && !whole)
         g_hash_table_insert(watch->open, path, new_time());
     else {
         g_hash_table_remove(watch->open, path);
@@ -80,20 +83,20 @@ static void on_event(GFileMonitor *monitor, GFile *file, GFile *other, GFileMoni
         take_event(data, other, false);
 }
 
-/* The folder of that path, which is watched from now on. */
+/* The folder of that path, which is watched from now on, and looked for while it is gone. */
 static Folder *folder_at(FlFileWatch *watch, const char *path)
 {
     Folder *folder = g_hash_table_lookup(watch->folders, path);
     if (folder)
         return folder;
-    g_autoptr(GFile) file = g_file_new_for_path(path);
     folder = g_new0(Folder, 1);
     folder->watch = watch;
+    folder->file = g_file_new_for_path(path);
     folder->names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     folder->patterns = g_ptr_array_new_with_free_func((GDestroyNotify)g_pattern_spec_free);
     g_hash_table_insert(watch->folders, g_strdup(path), folder);
-    if (g_file_test(path, G_FILE_TEST_IS_DIR))
-        folder->monitor = g_file_monitor_directory(file, G_FILE_MONITOR_WATCH_MOVES, NULL, NULL);
+    folder->monitor =
+        g_file_monitor_directory(folder->file, G_FILE_MONITOR_WATCH_MOVES, NULL, NULL);
     if (!folder->monitor)
         return folder;
     g_file_monitor_set_rate_limit(folder->monitor, TICK_MS);
@@ -106,14 +109,18 @@ static void add_pattern(FlFileWatch *watch, const char *folder, const char *name
     g_ptr_array_add(folder_at(watch, folder)->patterns, g_pattern_spec_new(names));
 }
 
-/* Drawings and style sheets beside them; new frames appear in the same folder. */
+/* Drawings and style sheets beside them; new frames appear in the same folder. An input that is
+ * gone may come back as a folder. */
 static void add_input(FlFileWatch *watch, const char *input)
 {
     static const char *const drawings[] = {"*.svg", "*.svgz", "*.css"};
-    g_autofree char *folder =
-        g_file_test(input, G_FILE_TEST_IS_DIR) ? g_strdup(input) : g_path_get_dirname(input);
-    for (size_t k = 0; k < G_N_ELEMENTS(drawings); k++)
-        add_pattern(watch, folder, drawings[k]);
+    g_autofree char *beside = g_path_get_dirname(input);
+    for (size_t k = 0; k < G_N_ELEMENTS(drawings); k++) {
+        if (!g_file_test(input, G_FILE_TEST_IS_DIR))
+            add_pattern(watch, beside, drawings[k]);
+        if (!g_file_test(input, G_FILE_TEST_IS_REGULAR))
+            add_pattern(watch, input, drawings[k]);
+    }
 }
 
 /* A glob of the files that a name such as map_%04d.png or map_####.png stands for, to be freed;
