@@ -53,7 +53,7 @@ result $? 'so is one that is another frame of the film'
 mkdir other && drawing other/w_0001.svg 56 3 && "$program" other -s "$style" -o now/w_0002.png -y -q && verify now
 [ $? = 1 ] && wrong 1 && grep -q 'now/w_0002.png: was made from something else' err
 result $? 'one of another film is found'
-convert w now/w_0002.png 2>err && verify now
+rsvg-convert film/w_0002.svg -o now/w_0002.png && verify now
 [ $? = 1 ] && wrong 1 && grep -q 'now/w_0002.png: \(does not say\|has changed\)' err
 result $? 'so is one that another program has written'
 mv w now/w_0002.png
