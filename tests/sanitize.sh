@@ -79,7 +79,9 @@ analysers)
         --suppressions-list=tests/cppcheck.supp '-DG_GNUC_PRINTF(a,b)=' -I include -I src \
         -i src/synth/arm --error-exitcode=66 src
     # paths through a function end after 60,000 states instead of 225,000, in two fifths of the time
-    git ls-files 'src/*.c' ':!src/*/arm/*' | xargs -P "$(nproc)" -n 8 clang-tidy -p "$build" --quiet \
+    window=src/cli/window.c # needs headers that are not on every machine
+    pkg-config --exists webkit2gtk-4.1 && window=
+    git ls-files 'src/*.c' ':!src/*/arm/*' ${window:+":!$window"} | xargs -P "$(nproc)" -n 8 clang-tidy -p "$build" --quiet \
         --extra-arg={-Xclang,-analyzer-config,-Xclang,max-nodes=60000}
     ;;
 *)
