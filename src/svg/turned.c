@@ -72,7 +72,7 @@ static void mend_blur(Turned *t, xmlNode *node, const FlAffine *map)
         blurs |= fl_is_one_of(step, "feGaussianBlur feDropShadow");
         t->warped |= in_box || is_upright(step);
     }
-    if (!blurs || in_box)
+    if (!filter || !blurs || in_box)
         return;
     g_autofree char *id = g_strdup_printf("fl-turned-%d", t->n_made++);
     xmlNode *turned = xmlAddNextSibling(filter, xmlDocCopyNode(filter, filter->doc, 1));
