@@ -44,11 +44,10 @@ FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **er
 /* The frames of a film lie in its folder: walk_0001.png, … beside walk.mov. */
 static char *frames_of_movie(const FlPlan *plan)
 {
-    g_assert(plan->out.movie);
     const char *suffix = plan->out.movie_format->suffix;
-    const bool named = g_str_has_suffix(plan->out.movie, suffix);
-    g_autoptr(GString) stem = g_string_new_len(
-        plan->out.movie, (gssize)(strlen(plan->out.movie) - (named ? strlen(suffix) : 0)));
+    g_autoptr(GString) stem = g_string_new(plan->out.movie);
+    if (suffix && g_str_has_suffix(stem->str, suffix))
+        g_string_truncate(stem, stem->len - strlen(suffix));
     g_string_replace(stem, "%", "%%", 0);
     return g_strdup_printf("%s_%%04d.png", stem->str);
 }
