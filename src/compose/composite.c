@@ -9,16 +9,21 @@
 #include "compose/wash.h"
 #include <string.h>
 
-#define NO_DRAW (-1)        // of the stain over paper and ground; -2 - d: over the ground of draw d
 #define LIFT 150            // of 255: wet marks thin the ground where it is darker
 #define STAIN "paper_stain" // region names have no underscore
 #define BLEED_PX 8          // reach of colours into transparency, for frames that are scaled later
+
+/* Where a layer comes from: a draw, or the part of the stain that lies over one. */
+typedef struct Entry {
+    int draw; // index in the draw list; -1: a stain over the paper and the ground at the bottom
+    bool is_stain;
+} Entry;
 
 /* The layers of a frame. */
 typedef struct Stack {
     FlComposite *composite;
     FlLayerSources sources;
-    int *draw; // the index in the draw list of each layer; NO_DRAW and below: it is the stain
+    Entry *entry; // by layer
 } Stack;
 
 /* The region's name, with a number from its second layer on. */
@@ -31,15 +36,22 @@ static char *layer_name(const FlComposeInput *input, const FlDrawList *draws, in
     return earlier == 0 ? g_strdup(name) : g_strdup_printf("%s-%d", name, earlier + 1);
 }
 
-/* The part of a stain that a layer has: all of it, or as much of it as lies over a draw. */
-static FlRect stain_box(const Stack *stack, int k)
+/* NULL: the layer is the stain over the paper. */
+static const FlDraw *draw_of(const Stack *stack, int k)
 {
-    const FlRect whole = stack->sources.input->stain->box;
-    const int over = NO_DRAW - 1 - stack->draw[k];
-    return over < 0 ? whole : fl_rect_and(whole, stack->composite->draws->draw[over].area.box);
+    return stack->entry[k].draw < 0 ? NULL : &stack->composite->draws->draw[stack->entry[k].draw];
 }
 
-/* Leaves of a stain what lies over a draw. */
+static FlRect layer_box(const Stack *stack, int k)
+{
+    const FlDraw *draw = draw_of(stack, k);
+    if (!stack->entry[k].is_stain)
+        return draw->area.box;
+    const FlRect stain = stack->sources.input->stain->box;
+    return draw ? fl_rect_and(stain, draw->area.box) : stain;
+}
+
+/* Cuts a stain to the coverage of a draw. */
 static void clip_stain(FlLayer *layer, const FlDraw *draw)
 {
     const FlRect box = layer->area.box, from = draw->area.box;
@@ -58,7 +70,7 @@ static void clip_stain(FlLayer *layer, const FlDraw *draw)
 static bool stain_layer(const Stack *stack, int k, GError **error)
 {
     const FlStainLayer *stain = stack->sources.input->stain;
-    const FlRect box = stain_box(stack, k);
+    const FlRect box = layer_box(stack, k);
     const size_t n = fl_rect_pixels(box), row = 4 * (size_t)box.width;
     uint8_t *coverage = fl_alloc_unset(n, 1, "a stain", error);
     FlLayer *layer = &stack->composite->layers[k];
@@ -77,8 +89,8 @@ static bool stain_layer(const Stack *stack, int k, GError **error)
                stain->rgba + 4 * ((size_t)(box.y - stain->box.y + y) * (size_t)stain->box.width +
                                   (size_t)(box.x - stain->box.x)),
                row);
-    if (stack->draw[k] < NO_DRAW)
-        clip_stain(layer, &stack->composite->draws->draw[NO_DRAW - 1 - stack->draw[k]]);
+    if (draw_of(stack, k))
+        clip_stain(layer, draw_of(stack, k));
     return true;
 }
 
@@ -87,23 +99,21 @@ static bool paint_one(void *data, int k, int thread, GError **error)
 {
     const Stack *stack = data;
     FlLayer *layer = &stack->composite->layers[k];
-    if (stack->draw[k] <= NO_DRAW)
+    if (stack->entry[k].is_stain)
         return stain_layer(stack, k, error);
-    return fl_layer_paint(layer, &stack->sources, stack->draw[k], error) &&
+    return fl_layer_paint(layer, &stack->sources, stack->entry[k].draw, error) &&
            fl_fade_find(layer, error);
 }
 
 static size_t layer_pixels(const Stack *stack, int k)
 {
-    return fl_rect_pixels(stack->draw[k] <= NO_DRAW
-                              ? stain_box(stack, k)
-                              : stack->composite->draws->draw[stack->draw[k]].area.box);
+    return fl_rect_pixels(layer_box(stack, k));
 }
 
 /* Returns: true if a layer has the paint of a region. */
 static bool is_painted(const Stack *stack, int k)
 {
-    const int region = stack->composite->draws->draw[stack->draw[k]].region;
+    const int region = draw_of(stack, k)->region;
     return stack->sources.input->painted_of[region] >= 0;
 }
 
@@ -125,9 +135,9 @@ static bool make_some(Stack *stack, int first, int end, FlUnderlay *above, GErro
     bool done = true;
     for (int k = end - 1; k >= first && done; k--) {
         FlLayer *layer = &stack->composite->layers[k];
-        if (stack->draw[k] <= NO_DRAW)
+        if (stack->entry[k].is_stain)
             continue;
-        fl_layer_begin(layer, &stack->sources, stack->draw[k]);
+        fl_layer_begin(layer, &stack->sources, stack->entry[k].draw);
         done = fl_underlay_next(above, layer, is_painted(stack, k), error);
     }
     return done && paint_some(stack, first, end, error);
@@ -147,11 +157,11 @@ static bool needs_all(const Stack *stack)
     const FlComposeInput *input = stack->sources.input;
     bool all = false;
     for (int k = 0; k < stack->composite->n_layers && !all; k++) {
-        if (stack->draw[k] <= NO_DRAW) {
+        if (stack->entry[k].is_stain) {
             all = k > 0;
             continue;
         }
-        const FlDraw *draw = &stack->composite->draws->draw[stack->draw[k]];
+        const FlDraw *draw = draw_of(stack, k);
         const int p = input->painted_of[draw->region];
         all = draw->blend_mode != FL_BLEND_MODE_OVER ||
               (p >= 0 && input->painted[p]->settings->stacking == FL_STACKING_GLAZE);
@@ -246,44 +256,47 @@ static bool is_layer(const FlComposeInput *input, const FlDraw *draw)
     return p != FL_LEFT_OUT && (p < 0 || input->painted[p]->from != FL_FROM_NOWHERE);
 }
 
-static void add_layer(FlComposite *composite, int *draw, char *name, int index)
+static void add_layer(FlComposite *composite, Entry *entry, char *name, Entry of)
 {
     composite->names[composite->n_layers] = name;
-    draw[composite->n_layers++] = index;
+    entry[composite->n_layers++] = of;
 }
 
-/* Lists the layers: a stain lies over paper and ground at the bottom, and over ground above figures
- * as far as that reaches. */
-static void list_layers(FlComposite *composite, const FlComposeInput *input, int *draw)
+/* Lists the layers from the bottom up. The stain lies over the paper and the ground at the bottom;
+ * over each ground above figures lies the part of it within that ground. */
+static void list_layers(FlComposite *composite, const FlComposeInput *input, Entry *entry)
 {
     const FlDrawList *draws = composite->draws;
     const FlStainLayer *stain = input->stain && input->stain->rgba ? input->stain : NULL;
     bool bottom = stain;
     int stains = 1;
     for (int r = 0; r < draws->n; r++) {
-        const bool ground = stain && stain->ground[draws->draw[r].region];
-        if (!is_layer(input, &draws->draw[r]))
+        const FlDraw *draw = &draws->draw[r];
+        const bool ground = stain && stain->ground[draw->region];
+        if (!is_layer(input, draw))
             continue;
         if (bottom && !ground)
-            add_layer(composite, draw, g_strdup(STAIN), NO_DRAW);
+            add_layer(composite, entry, g_strdup(STAIN), (Entry){-1, true});
         bottom = bottom && ground;
-        add_layer(composite, draw, layer_name(input, draws, r), r);
-        stains += ground && !bottom; // also where there is none: each ground keeps its number
-        if (ground && !bottom && fl_rect_meet(stain->box, draws->draw[r].area.box))
-            add_layer(composite, draw, g_strdup_printf(STAIN "-%d", stains), NO_DRAW - 1 - r);
+        add_layer(composite, entry, layer_name(input, draws, r), (Entry){r, false});
+        if (!ground || bottom)
+            continue;
+        stains++; // of ground out of reach as well: each keeps its number
+        if (fl_rect_meet(stain->box, draw->area.box))
+            add_layer(composite, entry, g_strdup_printf(STAIN "-%d", stains), (Entry){r, true});
     }
     if (bottom)
-        add_layer(composite, draw, g_strdup(STAIN), NO_DRAW);
+        add_layer(composite, entry, g_strdup(STAIN), (Entry){-1, true});
 }
 
 /* Notes the paint of a frame for the stains of the next one. */
-static void note_laid(const FlComposite *composite, const FlComposeInput *input, const int *draw)
+static void note_laid(const FlComposite *composite, const FlComposeInput *input, const Entry *entry)
 {
     if (!input->laid)
         return;
     fl_laid_begin(input->laid);
     for (int k = 0; k < composite->n_layers; k++) {
-        const int region = draw[k] <= NO_DRAW ? -1 : composite->draws->draw[draw[k]].region;
+        const int region = entry[k].is_stain ? -1 : composite->draws->draw[entry[k].draw].region;
         if (region >= 0 && input->painted_of[region] >= 0)
             fl_laid_add(input->laid, &composite->layers[k], region, input->background->paper);
     }
@@ -297,20 +310,20 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
     const int most = 2 * draws->n + 2; // each may have a stain, and the last one has no name
     composite->layers = g_new0(FlLayer, most);
     composite->names = g_new0(char *, most);
-    g_autofree int *draw = g_new0(int, most);
-    list_layers(composite, input, draw);
+    g_autofree Entry *entry = g_new0(Entry, most);
+    list_layers(composite, input, entry);
     composite->regions = g_new0(const char *, most);
     for (int k = 0; k < composite->n_layers; k++)
         composite->regions[k] =
-            draw[k] <= NO_DRAW
+            entry[k].is_stain
                 ? composite->names[k]
-                : fl_drawing_region(input->drawing, draws->draw[draw[k]].region)->name;
+                : fl_drawing_region(input->drawing, draws->draw[entry[k].draw].region)->name;
     g_auto(FlWashes) washes = {0};
-    Stack stack = {composite, {input, cover, exposures, &washes}, draw};
+    Stack stack = {composite, {input, cover, exposures, &washes}, entry};
     if (!fl_washes_find(&washes, input, draws, error) ||
         !(needs_all(&stack) ? resolve_all : resolve_in_turn)(&stack, error))
         return false;
-    note_laid(composite, input, draw);
+    note_laid(composite, input, entry);
     return true;
 }
 

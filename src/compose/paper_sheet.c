@@ -265,7 +265,7 @@ static bool fill_reduced(FlPaperSheet *sheet, const FlPaperChoice *choice, int k
 static bool make(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, float scale,
                  GError **error)
 {
-    const int n = finer(sheet, scale, choice->rough ? 2 : MOST_FINER);
+    const int n = finer(sheet, scale, choice->draft ? 2 : MOST_FINER);
     return n > 1 ? fill_reduced(sheet, choice, kind, scale, n, error)
                  : fill_sheet(sheet, choice, kind, scale, error);
 }

@@ -15,7 +15,7 @@ typedef struct FlPaperChoice {
     double relief;             // strength of its light, 0..2
     uint64_t seed;
     int boil;   // frames after which another sheet is taken; 0: never
-    bool rough; // grain that is finer than a px may be coarser, for a draft
+    bool draft; // a grain finer than a px may come out coarser
 } FlPaperChoice;
 
 /**

@@ -326,7 +326,8 @@ static void follow(Course *course, const Place *now, const FlPageSize *page, boo
     }
 }
 
-/** Says if a region is ground: what moves below it would mark what hides it. */
+/** Says if a region spans the page, rests, and hides nothing that moves: marks of what it hides
+ * would show on it. */
 static bool stays(const Course *courses, guint region)
 {
     const float *own = courses[region].all.box;

@@ -148,7 +148,7 @@ static const FlEngine engines[] = {
                               .load = lazy_load},
     [FL_ENGINE_TRANSPORT] = {.name = "transport",
                              .claims = fl_tile_exists,
-                             .rides = true,
+                             .needs_tile = true,
                              .exposure = transport_exposure,
                              .open = transport_open,
                              .close = transport_close,

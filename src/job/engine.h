@@ -36,9 +36,9 @@ typedef struct FlEngine {
     /** Paint has alpha of its own, up to this distance beyond its region, px. 0 or NULL: no alpha.
      */
     float (*reach)(const FlStyleInstance *style, const FlParams *params);
-    bool enlarges; // takes an exemplar of half the size of its picture
-    bool plays;    // shows the recording: whether it flows and is large enough matters
-    bool rides;    // on the tile of its style
+    bool enlarges;   // takes an exemplar of half the size of its picture
+    bool plays;      // shows the recording: whether it flows and is large enough matters
+    bool needs_tile; // paints with the tile of its style
     /** Returns: the state before the first frame; NULL with an error set. */
     void *(*open)(const FlEngineInput *input, GError **error);
     void (*close)(void *state); // NULL is fine

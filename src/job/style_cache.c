@@ -170,7 +170,7 @@ const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSet
         instance = load(cache, path, settings, texture_px, error);
     if (instance)
         g_ptr_array_add(cache->instances, instance);
-    if (instance && engine->rides && !instance->tile &&
+    if (instance && engine->needs_tile && !instance->tile &&
         !(instance->tile = fl_tile_load(path, instance->enlarged, error)))
         return NULL;
     return instance;

@@ -401,7 +401,7 @@ static bool make_sheet(FlFrames *frames, GError **error)
                                   .relief = o->paper_relief,
                                   .seed = o->paper_seed,
                                   .boil = o->paper_boil,
-                                  .rough = frames->small};
+                                  .draft = frames->small};
     const int width = shapes->width, height = shapes->height;
     const int size[] = {width, height, !o->background, choice.boil};
     FlDigest made_of = {0};
