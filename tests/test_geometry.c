@@ -1,4 +1,5 @@
 #include "open_svg.h"
+#include "svg/pen.h"
 #include "svg/svg_frame.h"
 #include "svg/transform.h"
 #include "worker/raster.h"
@@ -258,6 +259,22 @@ static void damaged_outlines_are_none(void)
     g_assert_cmpint(n_bad, >, 40);
 }
 
+static void corners_have_radii_of_their_own(void)
+{
+    static const double radii[4] = {2, 5, 20, 10};
+    static const FlPoint ends[8] = {{95, 0},  {100, 5}, {100, 40}, {80, 60},
+                                    {10, 60}, {0, 50},  {0, 2},    {2, 0}};
+    FlPen pen = fl_pen_new();
+    fl_pen_rect(&pen, 0, 0, 100, 60, radii, radii);
+    g_assert_cmpuint(pen.cubic->len, ==, 8);
+    for (guint k = 0; k < 8; k++) {
+        const FlPoint end = g_array_index(pen.cubic, FlCubic, k).p[3];
+        g_assert_cmpfloat(fabs(end.x - ends[k].x) + fabs(end.y - ends[k].y), <, 1e-9);
+    }
+    g_array_unref(pen.cubic);
+    g_array_unref(pen.subpath);
+}
+
 static void turns_are_right(void)
 {
     for (int d = -1000; d <= 1000; d += 7) {
@@ -287,6 +304,7 @@ int main(int argc, char **argv)
     TEST("outlines-lie-where-librsvg-draws-them", outlines_lie_where_librsvg_draws_them);
     TEST("packed-outlines-are-the-same", packed_outlines_are_the_same);
     TEST("damaged-outlines-are-none", damaged_outlines_are_none);
+    TEST("corners-have-radii-of-their-own", corners_have_radii_of_their_own);
     TEST("turns-are-right", turns_are_right);
     return g_test_run();
 }
