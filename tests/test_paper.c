@@ -81,6 +81,23 @@ static void lightness_deviates_as_in_scans(void)
         }
 }
 
+/* Single fibres and grains have colours of their own, up to a level of a* and b* in the mean. */
+static void grains_have_hues(void)
+{
+    g_autoptr(FlPaperSheet) sheet = sheet_of("cold", 1, SIDE, SIDE, 0);
+    g_autofree double *red = g_new(double, SIDE *SIDE), *blue = g_new(double, SIDE *SIDE);
+    double mean;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const uint16_t *factor = sheet->factor + 4 * i;
+        red[i] = (factor[0] - factor[1]) / (double)FL_PAPER_ONE;
+        blue[i] = (factor[2] - factor[1]) / (double)FL_PAPER_ONE;
+    }
+    const double reds = deviation_of(red, &mean), blues = deviation_of(blue, &mean);
+    g_test_message("red deviates by %.4f, blue by %.4f", reds, blues);
+    g_assert_true(reds > .006 && reds < .011);
+    g_assert_true(blues > .006 && blues < .012);
+}
+
 static void nothing_repeats(void)
 {
     for (int kind = 0; kind < FL_PAPER_KINDS; kind++) {
@@ -347,7 +364,7 @@ static void heavy_pigments_settle(void)
     fl_granulate(.14f, tooth, &area, amounts, play);
     g_assert_cmpint(amounts[0] - amounts[1], >, 4 * (amounts[2] - amounts[3]));
     g_assert_true(play[0] > 70 && play[1] < 58);
-    g_assert_true(play[2] > -64 - 10 && play[2] < -64 + 10);
+    g_assert_cmpint(play[0] - 64, >, 4 * (play[2] + 64));
     const int8_t before = play[0];
     fl_granulate(-.14f, tooth, &area, amounts, play); // dry paint does not part
     g_assert_cmpint(play[0], ==, before);
@@ -395,6 +412,7 @@ int main(int argc, char **argv)
     g_test_add_func("/paper/a-sheet-is-known", a_sheet_is_known);
     g_test_add_func("/paper/all-frames-have-the-same-sheet-unless-it-boils",
                     all_frames_have_the_same_sheet_unless_it_boils);
+    g_test_add_func("/paper/grains-have-hues", grains_have_hues);
     g_test_add_func("/paper/light-leaves-alpha-alone", light_leaves_alpha_alone);
     g_test_add_func("/paper/light-that-is-put-away-is-the-same",
                     light_that_is_put_away_is_the_same);

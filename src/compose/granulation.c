@@ -49,7 +49,7 @@ void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t 
     if (!tooth.height || granulation == 0)
         return;
     fill_strengths(granulation, strength);
-    const int32_t apart = (int32_t)lrintf(granulation * 3500); // of 65536: plays by height
+    const int32_t apart = (int32_t)lrintf(granulation * 5500); // of 65536: plays by height
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < box.height; y++) {
         const FlColumns span = fl_area_row(area, y);

@@ -19,6 +19,8 @@ enum {
     KEY_CLOUD,
     KEY_WARMTH,
     KEY_FLECKS,
+    KEY_RED,
+    KEY_YELLOW,
 };
 
 // clang-format off
@@ -236,4 +238,11 @@ float fl_paper_fleck(const FlPaperPlace *place, float x, float y)
     const float px = 1 / place->scale;
     const float n = fl_noise(fl_key(place->seed, KEY_FLECKS), x * px / 3.1f, y * px / 2.4f);
     return fl_clamp((n - .95f) * 4, 0, 1);
+}
+
+FlPaperHue fl_paper_hue(const FlPaperPlace *place, float x, float y)
+{
+    const float px = 1 / (1.6f * place->scale);
+    return (FlPaperHue){4 * fl_noise(fl_key(place->seed, KEY_RED), x * px, y * px),
+                        6 * fl_noise(fl_key(place->seed, KEY_YELLOW), x * px, y * px)};
 }

@@ -64,6 +64,13 @@ void fl_paper_fibres(const FlPaperPlace *place, FlRect box, float *fibres);
 float fl_paper_cloud(const FlPaperPlace *place, float x, float y);
 float fl_paper_warmth(const FlPaperPlace *place, float x, float y);
 
+/** Colours of single fibres and grains, which no sheet is without: of deviation about 1.4 and 2. */
+typedef struct FlPaperHue {
+    float red, yellow;
+} FlPaperHue;
+
+FlPaperHue fl_paper_hue(const FlPaperPlace *place, float x, float y);
+
 /** The share of a fleck at a place, 0..1. */
 float fl_paper_fleck(const FlPaperPlace *place, float x, float y);
 

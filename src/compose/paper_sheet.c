@@ -170,12 +170,13 @@ static void fill_pixel(const Surface *surface, int x, int y, uint16_t factor[4],
     const float light = (light_at(surface, surface->height + at) + .11f) / .82f;
     const float fleck = grain->flecks > 0 ? fl_paper_fleck(&surface->place, (float)x, (float)y) : 0;
     const float warm = .5f * slow_at(surface, surface->warmth, x, y) + .25f * fibre;
+    const FlPaperHue hue = fl_paper_hue(&surface->place, (float)x, (float)y);
     const float share = grain->sheet.relief * grain->relief * light + grain->cloud * cloud +
                         .5f * grain->streak * fibre - grain->flecks * fleck;
     const float fine = (height - surface->smooth[at]) / surface->fine.dev;
-    factor[0] = factor_of(surface->relief * share);
-    factor[1] = factor_of(surface->relief * (share - .3f * grain->warm * warm));
-    factor[2] = factor_of(surface->relief * (share - 1.6f * grain->warm * warm));
+    factor[0] = factor_of(surface->relief * (share + grain->warm * hue.red));
+    factor[1] = factor_of(surface->relief * (share - grain->warm * (.3f * warm + .5f * hue.red)));
+    factor[2] = factor_of(surface->relief * (share - grain->warm * (1.6f * warm + hue.yellow)));
     factor[3] = FL_PAPER_ONE;
     *tooth = (int8_t)lrintf(fl_clamp(fine, -TOOTH_END, TOOTH_END) * FL_TOOTH_ONE);
 }
