@@ -33,8 +33,9 @@ static void fill_ragged_row(int y, int8_t row[RAGGED])
     const float down = (float)y / RAGGED;
     for (int copy = 0; copy < 4; copy++) {
         for (int x = 0; x < RAGGED; x++) {
-            px[x] = (float)(x - copy % 2 * RAGGED) / cell;
-            py[x] = (float)(y - copy / 2 * RAGGED) / cell;
+            const float left = (float)(x - copy % 2 * RAGGED), top = (float)(y - copy / 2 * RAGGED);
+            px[x] = (.8f * left - .6f * top) / cell; // turned: a lattice has lines along its axes
+            py[x] = (.6f * left + .8f * top) / cell;
         }
         fl_noise_octaves_row(1, px, py, RAGGED, 4, .7f, noise[copy]);
     }
@@ -118,9 +119,9 @@ static inline float front_at(const Brush *brush, const Fields *slow, int i, floa
     const float past = away + (4 - 2 * MIN(strength, 1)) * ragged;
     const float fine =
         ragged_at(brush, 3.5f * slow->plane[FL_WASH_X][i], 3.5f * slow->plane[FL_WASH_Y][i]);
-    const float tongue = 3 + 10 * (1.6f + ragged) * MAX(fine + .3f, 0), beyond = MAX(past, 0);
-    const float line = .6f * fl_smooth(1 - past / tongue) + .2f * fl_decay(beyond * .08f) +
-                       .4f * fl_decay(beyond * .6f);
+    const float tongue = 4 + 15 * (1.6f + ragged) * MAX(fine + .45f, 0), beyond = MAX(past, 0);
+    const float line = .75f * fl_smooth(1 - past / tongue) + .25f * fl_decay(beyond * .06f) +
+                       .3f * fl_decay(beyond * .6f);
     const float front = past < 0 ? fl_decay(MAX(-past, 0) * .8f) : line;
     const bool far = (away < -12) | (away > 60);
     return far ? 0 : strength * front;
@@ -157,7 +158,7 @@ static inline float load_at(const Brush *brush, const Fields *slow, int i, float
         ragged_at(brush, 2 * wash->brush_px * (place - .75f * side * (1 - side)), .08f * along);
     return slow->plane[FL_WASH_LINES][i] *
            (brush->load[own] + (brush->load[own + 1] - brush->load[own]) * next +
-            (.14f + .42f * dry) * hairs * MIN(fabsf(hairs), 1));
+            (.2f + .7f * dry) * hairs * MIN(fabsf(hairs), 1));
 }
 
 /* The ln of the factor on the amount by a wash of strength 1, and the balance of the pigments, at a
@@ -175,7 +176,7 @@ static inline float tone_at(const Brush *brush, const Fields *slow, int i, float
     const float heavy = .05f * MAX(slow->plane[FL_WASH_HUE][i], 0);
     const float rough = lines * (slow->plane[FL_WASH_ROUGH][i] + heavy) * ragged;
     *hue = slow->plane[FL_WASH_HUE][i] + .4f * MAX(load, -1) + .3f * front + 3 * rough;
-    return slow->plane[FL_WASH_TONE][i] + .29f * load + .48f * front + rough +
+    return slow->plane[FL_WASH_TONE][i] + .29f * load + .58f * front + rough +
            .28f * MAX(style->tide, style->blooms) * lines * side;
 }
 

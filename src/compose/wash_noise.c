@@ -168,7 +168,7 @@ static void find_near(const Places *at, const float *away, Places *near, int *wh
 /* Fronts at which water stopped: drying lines and rims of blooms, as lobes between cusps. */
 static void find_fronts(const FlWash *wash, const Places *at, Values values)
 {
-    static const float place[2] = {170, 170}, wide[2] = {34, 34}, parts[2] = {70, 70};
+    static const float place[2] = {300, 300}, wide[2] = {34, 34}, parts[2] = {160, 160};
     float *all = values[FL_WASH_FRONT], *fronts = values[FL_WASH_FRONTS];
     float away[FL_NOISE_ROW], bloom[FL_NOISE_ROW], lobe[FL_NOISE_ROW];
     float place_of[FL_NOISE_ROW], found[FL_NOISE_ROW];
