@@ -57,45 +57,23 @@ static inline void *fl_alloc_scratch(size_t count, size_t element_bytes, const c
     return memory;
 }
 
-#define FL_HUGE_PAGE ((size_t)2 << 20)
 #define FL_PAGE ((size_t)64 << 10) // a multiple of every machine's
 
 /**
- * As fl_alloc_unset(), for a table of many megabytes that is read at random: on huge pages where
- * the system has them, which spares the search a page walk for nearly every patch.
- */
-static inline void *fl_alloc_huge(size_t count, size_t element_bytes, const char *what,
-                                  GError **error)
-{
-    size_t bytes = 0;
-    if (__builtin_mul_overflow(count, element_bytes, &bytes) || bytes < 2 * FL_HUGE_PAGE ||
-        bytes > SIZE_MAX - FL_HUGE_PAGE)
-        return fl_alloc_unset(count, element_bytes, what, error);
-    bytes = (bytes + FL_HUGE_PAGE - 1) / FL_HUGE_PAGE * FL_HUGE_PAGE;
-    void *memory = aligned_alloc(FL_HUGE_PAGE, bytes);
-    if (!memory || !fl_headroom_left()) {
-        free(memory);
-        return fl_alloc_unset(count, element_bytes, what, error);
-    }
-#ifdef MADV_HUGEPAGE
-    (void)madvise(memory, bytes, MADV_HUGEPAGE); // before the pages are touched
-#endif
-    return memory;
-}
-
-/**
- * The same, for a table of which only a part is used at a time: pages take memory when they are
- * first written to, until fl_release().
+ * As fl_alloc_unset(), for a table of which only a part is used at a time: pages take memory when
+ * they are first written to, until fl_release().
  */
 static inline void *fl_alloc_lazy(size_t count, size_t element_bytes, const char *what,
                                   GError **error)
 {
     size_t bytes = 0;
     void *memory = NULL;
-    if (__builtin_mul_overflow(count, element_bytes, &bytes) || bytes > SIZE_MAX - FL_HUGE_PAGE ||
-        !(memory = aligned_alloc(FL_PAGE, (bytes + FL_PAGE) / FL_PAGE * FL_PAGE)))
-        fl_alloc_error(count, element_bytes, what, error);
-    return memory;
+    if (!__builtin_mul_overflow(count, element_bytes, &bytes) && bytes <= SIZE_MAX - FL_PAGE)
+        memory = aligned_alloc(FL_PAGE, (bytes + FL_PAGE) / FL_PAGE * FL_PAGE);
+    if (memory && fl_headroom_left())
+        return memory;
+    free(memory);
+    return fl_alloc_error(count, element_bytes, what, error);
 }
 
 /** Returns the whole pages of a part of such a table to the system; the part becomes undefined. */

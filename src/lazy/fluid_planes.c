@@ -63,11 +63,11 @@ bool fl_fluid_picture_init(FlFluidPicture *picture, int width, int height, GErro
 {
     const size_t pitch = (size_t)width + 2 * FL_PATCH_RADIUS;
     const size_t n = pitch * ((size_t)height + 2 * FL_PATCH_RADIUS);
-    FlFluidTexel *all = fl_alloc_huge(n, sizeof *all, "a region's guides", error);
+    FlFluidTexel *all = fl_alloc(n, sizeof *all, "a region's guides", error);
     *picture = (FlFluidPicture){width, height, (ptrdiff_t)pitch, NULL};
     if (!all)
         return false;
-    memset(all, 0, n * sizeof *all); // channels without a plane stay 0
+    // channels without a plane stay 0
     picture->pixel = all + FL_PATCH_RADIUS * pitch + FL_PATCH_RADIUS;
     return true;
 }

@@ -81,9 +81,7 @@ FlEnlargement *fl_enlargement_new(const FlStyle *style, const FlExemplarLevel *h
     level->pitch = (size_t)style->width + 2 * FL_PAD;
     level->frame_pixels = level->pitch * ((size_t)style->height + 2 * FL_PAD);
     const size_t pixels = level->frame_pixels * (size_t)level->n_frames;
-    level->colour = level->window < level->n_frames
-                        ? fl_alloc_lazy(pixels, sizeof *level->colour, "an exemplar", error)
-                        : fl_alloc_huge(pixels, sizeof *level->colour, "an exemplar", error);
+    level->colour = fl_alloc_lazy(pixels, sizeof *level->colour, "an exemplar", error);
     if (!level->colour || !pack_window(enlargement, style, error) ||
         (level->window < level->n_frames && !spill_frames(enlargement, style, error)))
         return NULL;

@@ -364,12 +364,11 @@ static bool init_levels(FlExemplar *exemplar, const FlStyle *style, int window, 
     for (int l = 0; l < exemplar->n_levels; l++, w = (w + 1) / 2, h = (h + 1) / 2)
         if (!fl_exemplar_level_init(&exemplar->level[l], w, h, style->n_frames, window, error))
             return false;
-    const FlExemplarLevel *full = &exemplar->level[0];
-    const size_t pixels = (size_t)style->width * (size_t)style->height;
-    return (exemplar->distance = fl_exemplar_level_alloc(full, pixels, sizeof(float), error)) &&
-           (exemplar->ext_plus = fl_exemplar_level_alloc(full, pixels, sizeof(float), error)) &&
-           (exemplar->ext_minus = fl_exemplar_level_alloc(full, pixels, sizeof(float), error)) &&
-           (exemplar->mask = fl_alloc(pixels * (size_t)style->n_frames, 1, "an exemplar", error));
+    const size_t n = (size_t)style->width * (size_t)style->height * (size_t)style->n_frames;
+    return (exemplar->distance = fl_alloc_lazy(n, sizeof(float), "an exemplar", error)) &&
+           (exemplar->ext_plus = fl_alloc_lazy(n, sizeof(float), "an exemplar", error)) &&
+           (exemplar->ext_minus = fl_alloc_lazy(n, sizeof(float), "an exemplar", error)) &&
+           (exemplar->mask = fl_alloc(n, 1, "an exemplar", error));
 }
 
 static bool init_frames(FlExemplarFrames *frames, const FlStyle *style, const FlParams *params,

@@ -100,14 +100,6 @@ static void rotate_offsets(FlExemplarLevel *level)
         }
 }
 
-void *fl_exemplar_level_alloc(const FlExemplarLevel *level, size_t frame_elements,
-                              size_t element_bytes, GError **error)
-{
-    const size_t n = frame_elements * (size_t)level->n_frames;
-    return level->window < level->n_frames ? fl_alloc_lazy(n, element_bytes, "an exemplar", error)
-                                           : fl_alloc_huge(n, element_bytes, "an exemplar", error);
-}
-
 bool fl_exemplar_level_init(FlExemplarLevel *level, int width, int height, int n_frames, int window,
                             GError **error)
 {
@@ -115,10 +107,9 @@ bool fl_exemplar_level_init(FlExemplarLevel *level, int width, int height, int n
     level->n_frames = n_frames, level->window = window;
     level->pitch = (size_t)width + 2 * FL_PAD;
     level->frame_pixels = level->pitch * ((size_t)height + 2 * FL_PAD);
-    if (!(level->pixels =
-              fl_exemplar_level_alloc(level, level->frame_pixels, sizeof(FlTexel), error)) ||
-        !(level->colour =
-              fl_exemplar_level_alloc(level, level->frame_pixels, sizeof(FlSplinePixel), error)) ||
+    const size_t n = level->frame_pixels * (size_t)n_frames;
+    if (!(level->pixels = fl_alloc_lazy(n, sizeof *level->pixels, "an exemplar", error)) ||
+        !(level->colour = fl_alloc_lazy(n, sizeof *level->colour, "an exemplar", error)) ||
         !(level->offsets = fl_alloc(FL_ANGLES, sizeof *level->offsets, "an exemplar", error)))
         return false;
     rotate_offsets(level);

@@ -82,11 +82,6 @@ bool fl_exemplar_level_init(FlExemplarLevel *level, int width, int height, int n
                             GError **error);
 void fl_exemplar_level_clear(FlExemplarLevel *level); // all 0 is fine
 
-/** An array for all frames of a level, to be freed with free(); with a shorter window only its
- * frames take memory. NULL with FL_ERROR_NO_MEMORY set. */
-void *fl_exemplar_level_alloc(const FlExemplarLevel *level, size_t frame_elements,
-                              size_t element_bytes, GError **error);
-
 /** Packs frame t from the planes of its pyramid in the level's size. planes: scratch for three of
  * them. Any thread; a frame once. */
 void fl_exemplar_level_pack(FlExemplarLevel *level, const FlPyramid *pyramid,
