@@ -1,9 +1,11 @@
 #include "style/estimate.h"
 
+#include "base/modes.h"
+
 #include <math.h>
 #include <string.h>
 
-enum { TERMS = 6, ROUNDS = 5, MOST_SAMPLES = 200000, WIDEST = 48 };
+enum { TERMS = FL_MODES, ROUNDS = 5, MOST_SAMPLES = 200000, WIDEST = 48 };
 
 static const double NARROWEST = 8; // levels: paper grain is never cut off as paint
 
@@ -46,9 +48,8 @@ float fl_flat_field_range(const FlFlatField *field)
     return range;
 }
 
-/* Normal equations of the least squares for the three channels, which share the matrix. */
 typedef struct Fit {
-    double matrix[TERMS][TERMS], right[3][TERMS];
+    FlLeastSquares channel[3];
     double low[3], high[3]; // of the gains before this round
     size_t n;
     uint32_t residual[256]; // histogram of the largest channel's, for the next round's limit
@@ -70,12 +71,8 @@ static void add_sample(Fit *fit, const FlFlatField *field, const double term[TER
     }
     fit->n++;
     fit->residual[(int)MIN(most, 255)]++;
-    for (int i = 0; i < TERMS; i++) {
-        for (int j = 0; j < TERMS; j++)
-            fit->matrix[i][j] += term[i] * term[j];
-        for (int c = 0; c < 3; c++)
-            fit->right[c][i] += term[i] * rgb[c] / MAX(field->paper[c], 1);
-    }
+    for (int c = 0; c < 3; c++)
+        fl_least_squares_add(&fit->channel[c], term, (double)rgb[c] / MAX(field->paper[c], 1), 1);
 }
 
 static void add_samples(Fit *fit, const FlFlatField *field, const FlClip *clip, const uint8_t *mask,
@@ -93,29 +90,17 @@ static void add_samples(Fit *fit, const FlFlatField *field, const FlClip *clip, 
     }
 }
 
-/* Gaussian elimination without pivots: the matrix is positive definite by the ridge. */
+/* The gains, with a prior of 1 that has a hundredth of the weight. */
 static void solve(Fit *fit, FlFlatField *field)
 {
-    for (int i = 0; i < TERMS; i++) { // a prior of gain 1, with a hundredth of the weight
-        fit->matrix[i][i] += 0.01 * (double)fit->n;
-        for (int c = 0; i == 0 && c < 3; c++)
-            fit->right[c][0] += 0.01 * (double)fit->n;
+    const double prior = 0.01 * (double)fit->n;
+    for (int c = 0; c < 3; c++) {
+        FlLeastSquares *sum = &fit->channel[c];
+        fl_least_squares_add(sum, (const double[TERMS]){1}, 1, prior);
+        for (int i = 1; i < TERMS; i++)
+            fl_least_squares_ridge(sum, i, prior);
+        (void)fl_least_squares_solve(sum, field->gain[c]); // determined by the prior
     }
-    for (int i = 0; i < TERMS; i++)
-        for (int k = i + 1; k < TERMS; k++) {
-            const double factor = fit->matrix[k][i] / fit->matrix[i][i];
-            for (int j = i; j < TERMS; j++)
-                fit->matrix[k][j] -= factor * fit->matrix[i][j];
-            for (int c = 0; c < 3; c++)
-                fit->right[c][k] -= factor * fit->right[c][i];
-        }
-    for (int c = 0; c < 3; c++)
-        for (int i = TERMS - 1; i >= 0; i--) {
-            double sum = fit->right[c][i];
-            for (int j = i + 1; j < TERMS; j++)
-                sum -= fit->matrix[i][j] * field->gain[c][j];
-            field->gain[c][i] = sum / fit->matrix[i][i];
-        }
 }
 
 /* Three times the median residual: beyond it is paint, or dirt. */
