@@ -236,9 +236,9 @@ static void contrast_stays_where_use_is_equal_and_goes_where_it_is_not(void)
     g_assert_cmpfloat(off, <, .7 * strict);
 }
 
-/* No patch of a draft is turned, and its first frame takes the nearest matches on the finest level.
- */
-static void a_draft_begins_with_less_search_and_the_same_contrast(void)
+/* No patch of a draft is turned, its first frame takes the nearest matches on the finest level, and
+ * the others are searched on that level alone. */
+static void a_draft_has_less_search_and_the_same_contrast(void)
 {
     FlFrameStats stats[2][2];
     double spread[2];
@@ -246,13 +246,17 @@ static void a_draft_begins_with_less_search_and_the_same_contrast(void)
         g_auto(Film) film;
         film_init(&film, still_of_blotches(), "lazyfluids", "1");
         film.params->half_size = draft, film.params->rotate = true;
+        turn_by(&film, .05);
         for (int frame = 0; frame < 2; frame++)
             g_assert_true(fl_lazy_frame(film.lazy, &film.guides, film.rgb, film.alpha,
                                         &stats[draft][frame], NULL, NULL));
+        paint(&film, 8);
         spread[draft] = spread_of(film.rgb, film.guides.mask, PIXELS);
     }
     const uint64_t first = stats[1][0].level[0].counts.tried;
     const uint64_t second = stats[1][1].level[0].counts.tried;
+    g_assert_cmpint(stats[1][0].n_levels, ==, stats[0][1].n_levels);
+    g_assert_cmpint(stats[1][1].n_levels, ==, 1);
     g_assert_cmpuint(first, <, second / 2);
     g_assert_cmpuint(second, <, stats[0][1].level[0].counts.tried * 4 / 5);
     g_assert_cmpfloat(spread[1], >, .9 * spread[0]);
@@ -569,7 +573,7 @@ int main(int argc, char **argv)
     g_test_add_func("/lazy/contrast-stays-where-use-is-equal-and-goes-where-it-is-not",
                     contrast_stays_where_use_is_equal_and_goes_where_it_is_not);
     g_test_add_func("/lazy/a-draft-begins-with-less-search-and-the-same-contrast",
-                    a_draft_begins_with_less_search_and_the_same_contrast);
+                    a_draft_has_less_search_and_the_same_contrast);
     g_test_add_func("/lazy/below-1-the-border-is-matched-freely",
                     below_1_the_border_is_matched_freely);
     g_test_add_func("/lazy/a-cut-out-has-the-alpha-of-its-exemplar-and-no-paper-in-its-colours",

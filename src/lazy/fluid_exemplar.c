@@ -154,7 +154,7 @@ bool fl_fluid_exemplar_pack(FlFluidExemplar *fluid, const FlExemplar *exemplar, 
                             int before, int n_levels, float sigma_px, const FlFluidWeights *weights,
                             GError **error)
 {
-    if (fluid->n_levels > 0 && fluid->frame == frame && fluid->before == before)
+    if (fluid->n_levels >= n_levels && fluid->frame == frame && fluid->before == before)
         return true;
     fl_fluid_exemplar_clear(fluid);
     g_auto(FlFluidPlanes) fine = {0};

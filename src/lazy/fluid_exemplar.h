@@ -19,8 +19,8 @@ typedef struct FlFluidExemplar {
 
 /**
  * Packs two frames of a style, colours as they are on its paper and alpha from the masks; of a
- * cut-out colours times its alpha. Does not pack the same frames twice. Both must be in the
- * exemplar's window. sigma_px: of the blur of alpha; weights and n_levels must not change.
+ * cut-out colours times its alpha. Packs the same frames again only for more levels. Both must be
+ * in the exemplar's window. sigma_px: of the blur of alpha; it and weights must not change.
  */
 bool fl_fluid_exemplar_pack(FlFluidExemplar *fluid, const FlExemplar *exemplar, int frame,
                             int before, int n_levels, float sigma_px, const FlFluidWeights *weights,

@@ -33,7 +33,8 @@ struct FlLazy {
     FlKernels kernels;
     FlFluidWeights weights;
     float sigma_px;
-    int width, height, n_levels;
+    int width, height, most_levels;
+    int n_levels; // of the frame in hand
     uint64_t key;
     FlLazyState last;
     FlRecordingEnd end;
@@ -71,7 +72,7 @@ FlLazy *fl_lazy_new(const FlExemplar *exemplar, const FlParams *params, FlRecord
     lazy->exemplar = exemplar, lazy->params = params, lazy->end = end;
     lazy->width = size.width, lazy->height = size.height;
     lazy->sigma_px = sigma_of(exemplar, params);
-    lazy->n_levels = MIN(exemplar->n_levels, fl_levels_of(size.frame_width, size.frame_height));
+    lazy->most_levels = MIN(exemplar->n_levels, fl_levels_of(size.frame_width, size.frame_height));
     lazy->key = fl_hash64(seed);
     fl_kernels_init(&lazy->kernels, fl_cpu_flags());
     lazy->last = (FlLazyState){.width = size.width, .height = size.height};
@@ -372,14 +373,14 @@ static bool start_picture(FlLazy *lazy, int l, GError **error)
 }
 
 /* Border, then interior; on a level without separate ones the first is all. Drafts do not turn
- * patches, and the finest level of their first frame takes nearest neighbours: the coarser ones
- * have used the style evenly. */
+ * patches, and their finest level below others takes nearest neighbours: these have used the style
+ * evenly. */
 static bool retrieve(FlLazy *lazy, int l, uint64_t key, FlLevelStats *stats, GError **error)
 {
     Level *level = &lazy->level[l];
     const FlFluidLevel *source = &lazy->source.level[l];
     const FlParams *params = lazy->params;
-    const bool quick = params->half_size && l == 0 && lazy->last.frame == 1;
+    const bool quick = params->half_size && l == 0 && lazy->n_levels > 1;
     stats->energy = 0;
     for (int s = 0; s < 2; s++) {
         const bool border = s == 0 && source->segments.n[1] > 0;
@@ -592,6 +593,8 @@ static bool paint(FlLazy *lazy, FlGuides *guides, uint8_t *rgb, uint8_t *alpha, 
     clear_frame(lazy);
     lazy->last.frame++;
     lazy->weights = weights_of(lazy->params);
+    // drafts that go on from a frame search the finest level alone, where its field was carried
+    lazy->n_levels = lazy->params->half_size && lazy->last.valid ? 1 : lazy->most_levels;
     if (fl_guides_box(guides, FL_INSIDE).width == 0) {
         write_nothing(lazy, rgb, alpha);
         return true;

@@ -12,7 +12,7 @@
  * Of params it reads: w_bound (eta) and w_temp (lambda), w_uni (0: nearest neighbours, below 1:
  * along the border, else strict), uniform_blocks, border (the band of blurred alpha), shape_edge
  * (0: alpha is the mask with its bare margin), rotate (four quarter turns), the rounds,
- * finest_sweeps, half_size (less search), vote_sharpness, rest and motion_blur.
+ * finest_sweeps, half_size (less search: drafts), vote_sharpness, rest and motion_blur.
  */
 typedef struct FlLazy FlLazy;
 
