@@ -362,6 +362,42 @@ static void test_fingers(void)
     scene_free(scene);
 }
 
+static void draw_stroke(int end, uint8_t *mask)
+{
+    for (int p = 0; p < PIXELS; p++)
+        mask[p] = p % SIDE >= 20 && p % SIDE < end && abs(p / SIDE - 100) < 15 ? 255 : 0;
+}
+
+/* A stroke that grows at its end advances there, and not at its new sides. */
+static void test_stroke(void)
+{
+    Scene *scene = scene_new();
+    g_auto(FlMovingEdge) before = {0};
+    g_auto(FlMovingEdge) edge = {0};
+    draw_stroke(100, scene->now);
+    g_assert_true(fl_moving_edge_look(&before, &scene->shape, NULL));
+    for (int i = 0; i < before.n; i++)
+        before.point[i].speed = before.point[i].nx > 0.5f ? 20 : 0;
+    draw_stroke(120, scene->now);
+    scene->shape.motion = NULL;
+    scene->shape.distance_before = before.distance;
+    g_assert_true(fl_moving_edge_init(&edge, &scene->shape, &before, NULL));
+    int sides = 0, ends = 0;
+    for (int i = 0; i < edge.n; i++) {
+        const FlEdgePoint *point = &edge.point[i];
+        if (point->x > 107 && point->x < 113) {
+            g_assert_cmpfloat(point->speed, <, 1);
+            sides++;
+        } else if (point->nx > 0.9f && fabsf(point->y - 100) < 5) {
+            g_assert_cmpfloat(point->speed, >, 10);
+            ends++;
+        }
+    }
+    g_assert_cmpint(sides, >, 6);
+    g_assert_cmpint(ends, >, 6);
+    scene_free(scene);
+}
+
 static void test_rest(void)
 {
     Scene *scene = scene_new();
@@ -812,6 +848,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/a-stain-breaks-up-towards-its-sides", test_frayed);
     g_test_add_func("/wet/a-front-ends-alike-on-stains", test_front_over_stain);
     g_test_add_func("/wet/a-few-fingers-are-long-and-many-short", test_fingers);
+    g_test_add_func("/wet/a-stroke-advances-at-its-end-and-not-at-its-sides", test_stroke);
     g_test_add_func("/wet/what-rests-marks-nothing", test_rest);
     g_test_add_func("/wet/what-vanishes-leaves-less-than-what-recedes", test_vanish);
     g_test_add_func("/wet/fronts-go-with-a-shape-that-jumps", test_jump);

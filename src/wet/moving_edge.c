@@ -100,8 +100,24 @@ static void leave_out_spin(const FlWetShape *shape, float u, float v, FlEdgePoin
     point->u += share * (u - point->u), point->v += share * (v - point->v);
 }
 
+/** The share of an advance over the contour before that goes the way a point faces: the sides of a
+ * stroke that grows at its end do not advance. */
+static float find_facing(const FlWetShape *shape, const FlEdgePoint *point)
+{
+    const float *before = shape->distance_before, x = point->x - point->u, y = point->y - point->v;
+    const float inner = fl_wet_plane_at(before, shape->rect, x - point->nx, y - point->ny);
+    const float outer = fl_wet_plane_at(before, shape->rect, x + point->nx, y + point->ny);
+    return CLAMP((inner - outer) / 2, 0, 1);
+}
+
+/** The part of a speed that a point has by its facing; a retreat is whole. */
+static float facing_part(float speed, float facing)
+{
+    return speed > 0 ? facing * speed : speed;
+}
+
 /** The normal part of the motion, and growth that the motion does not explain. */
-static void find_speed(const FlWetShape *shape, bool known, FlEdgePoint *point)
+static void find_speed(const FlWetShape *shape, bool known, float facing, FlEdgePoint *point)
 {
     const float page = FL_WET_PAGE_PX * shape->px, most = 0.05f * page * shape->frames;
     const float before = depth_before(shape, point, point->u, point->v);
@@ -109,7 +125,7 @@ static void find_speed(const FlWetShape *shape, bool known, FlEdgePoint *point)
     fl_wet_ground(shape, point->x, point->y, ground);
     point->u -= ground[0], point->v -= ground[1];
     const float moved = point->u * point->nx + point->v * point->ny;
-    const float grown = CLAMP(point->depth - before, -most, most) *
+    const float grown = facing_part(CLAMP(point->depth - before, -most, most), facing) *
                         (known ? 1 : fl_ease(0.02f, 0.2f, shape->overlap));
     const float speed = (moved + grown) / shape->frames;
     point->speed = CLAMP(speed, -0.12f * page, 0.12f * page);
@@ -256,7 +272,8 @@ static void find_motions(const FlWetShape *shape, FlMovingEdge *edge, bool *know
 static void find_point(const FlWetShape *shape, const FlMovingEdge *before, bool known,
                        const FlMovingEdge *edge, FlEdgePoint *point)
 {
-    find_speed(shape, known, point);
+    const float facing = find_facing(shape, point);
+    find_speed(shape, known, facing, point);
     find_width(shape, edge->distance, point);
     const FlEdgePoint *was = point_before(shape, before, point);
     find_ink(shape, before, was, point);
@@ -266,7 +283,7 @@ static void find_point(const FlWetShape *shape, const FlMovingEdge *before, bool
     memcpy(point->ink_before, was ? was->ink : point->ink, sizeof point->ink);
     point->receding = MAX(-point->speed, 0) * shape->frames;
     point->receded = MAX((was ? was->receded : 0) - point->speed * shape->frames, 0);
-    point->speed = 0.55f * point->speed + 0.45f * speed;
+    point->speed = 0.55f * point->speed + 0.45f * facing_part(speed, facing);
 }
 
 bool fl_moving_edge_init(FlMovingEdge *edge, const FlWetShape *shape, const FlMovingEdge *before,
