@@ -77,6 +77,14 @@ tell("the film appears", until(DRAWN))
 tell("with the regions of the drawing", browser.ask('byId("regions").rows.length') == 2)
 tell("and plays", until("state.playing") and until("state.at === 2") and until("state.at === 4"))
 tell("and is refined", until(REFINED) and until('byId("status").textContent.includes("byte for byte")'))
+tell("a frame that was never painted shows the last one that was", browser.ask("""(() => {
+    const was = frames.map((f) => ({ ...f })), playing = state.playing;
+    frames.forEach((f, k) => { if (k !== 4) Object.assign(f, { generation: -1, images: {} }); });
+    state.playing = true;
+    const stands = standIn(2);
+    state.playing = playing;
+    frames.forEach((f, k) => Object.assign(f, was[k]));
+    return stands; })()""") == 4)
 browser.ask("play(false), show(3)")
 tell("each style has a picture", until("live.samples.every((s) => !s.canvas.classList.contains('old'))"))
 before = pixels(3)
@@ -183,6 +191,8 @@ tell("a folder that is dropped is its drawings", browser.ask("""(() => {
     const file = (name) => ({ name, isFile: true, file: (take) => take(new File([""], name)) }), read = [[file("a.svg"), file("b")], [file("c.css")], []];
     const folder = { isDirectory: true, createReader: () => ({ readEntries: (take) => take(read.shift()) }) };
     return filesOf([{ webkitGetAsEntry: () => folder }]).then((files) => files.map((f) => f.name).join()); })()""") == "a.svg,c.css")
+browser.ask("drop(filesOf([{ webkitGetAsEntry: () => ({ isFile: true, file: (take, fail) => fail(new Error('gone')) }) }])), 0")
+tell("one that cannot be read is told", until("byId('told').textContent.startsWith('nothing was opened')"))
 wide = []
 for width in 1440, 1024, 390:
     browser.call("Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=False)
