@@ -177,6 +177,53 @@ static void a_trimmed_cut_out_paints_nothing_far_outside(void)
     g_assert_cmpfloat(sum / n, <, .01);
 }
 
+static int most_beside_a_limit(const Film *film, const FlNnf *field)
+{
+    int most = 0;
+    for (int p = SIDE; p < PIXELS - SIDE; p++)
+        if (field->match[p - 1].frame == FL_NO_MATCH || field->match[p + 1].frame == FL_NO_MATCH ||
+            field->match[p - SIDE].frame == FL_NO_MATCH ||
+            field->match[p + SIDE].frame == FL_NO_MATCH)
+            most = MAX(most, film->alpha[p]);
+    return most;
+}
+
+/* Where nothing holds the fluid back, it is full as far out as it goes. */
+static void fluid_ends_without_steps(void)
+{
+    g_auto(Film) film;
+    g_autoptr(GError) error = NULL;
+    FlStyle *style = cut_out(false);
+    memset(style->mask, 255, STYLE_W * STYLE_H);
+    film_init(&film, style, "lazyfluids-steady", "1");
+    FlSynthView view;
+    g_assert_true(
+        fl_lazy_frame(film.lazy, &film.guides, film.rgb, film.alpha, NULL, &view, &error));
+    const int most = most_beside_a_limit(&film, view.nnf);
+    g_test_message("alpha at the limits of the fluid: at most %d", most);
+    g_assert_cmpint(most, <, 160);
+    g_assert_cmpint(film.alpha[35 * SIDE + 35], ==, 255);
+}
+
+/* A ribbon of four sigmas is no wider than what its rim wants for itself. */
+static void a_ribbon_frays_less_than_a_body(void)
+{
+    g_auto(Film) film;
+    film_init(&film, cut_out(true), "lazyfluids-steady", "1");
+    double off = 0, n = 0;
+    for (int p = 0; p < PIXELS; p++) {
+        const double inside = MIN(28 - fabs(p % SIDE - 35.5), 3 - fabs(p / SIDE - 35.5));
+        film.guides.distance[p] = (float)inside;
+        film.guides.mask[p] = (uint8_t)lrint(255 * CLAMP(inside + .5, 0, 1));
+    }
+    paint(&film, 2);
+    for (int p = 0; p < PIXELS; p++)
+        if (fabs(film.guides.distance[p]) < 2)
+            off += abs(film.alpha[p] - film.guides.mask[p]) / 255.0, n++;
+    g_test_message("alpha of the rim of a ribbon: off by %.3f", off / n);
+    g_assert_cmpfloat(off / n, <, .085);
+}
+
 /* The least alpha amid a line of 3 px that moves up and down, but for its ends. */
 static void a_thin_line_is_whole(void)
 {
@@ -579,6 +626,8 @@ int main(int argc, char **argv)
     g_test_add_func("/lazy/a-cut-out-has-the-alpha-of-its-exemplar-and-no-paper-in-its-colours",
                     a_cut_out_has_the_alpha_of_its_exemplar_and_no_paper_in_its_colours);
     g_test_add_func("/lazy/a-thin-line-is-whole", a_thin_line_is_whole);
+    g_test_add_func("/lazy/fluid-ends-without-steps", fluid_ends_without_steps);
+    g_test_add_func("/lazy/a-ribbon-frays-less-than-a-body", a_ribbon_frays_less_than_a_body);
     g_test_add_func("/lazy/a-trimmed-cut-out-paints-nothing-far-outside",
                     a_trimmed_cut_out_paints_nothing_far_outside);
     g_test_add_func("/lazy/paint-turns-with-the-drawing", paint_turns_with_the_drawing);

@@ -17,7 +17,7 @@
 #define SIGMA_LEAST 1.5 // px, of the style's own border
 #define SIGMA_MOST 6
 #define OUTER 1.28f // sigmas from the contour out to l
-#define ROOM 2      // sigmas of half a width that has a boundary and an interior
+#define ROOM 4      // sigmas of half a width that has a boundary and an interior
 
 /* One level of the target. Coarser ones go before finer ones are made but for their planes. */
 typedef struct Level {
@@ -525,21 +525,44 @@ static uint8_t straight(const uint16_t *rgba, int c, uint8_t paper)
     return alpha > 0 ? (uint8_t)((value * 255 + alpha / 2) / alpha) : paper;
 }
 
-/* The last output without specks beside the fluid, which come from patches of its edge. The next
- * frame is warped from the one with them, whose edge is not mixed with paper. */
-static uint16_t *without_specks(const FlLazy *lazy, GError **error)
+#define FADE 2 // px around a pixel whose matches tell how much of it is fluid
+
+/* 1 in the fluid, falling to the contour of what has matches and 0 beyond; more than 0 at each
+ * match, whose colour would be lost. */
+static float presence(const FlNnf *nnf, int x, int y)
+{
+    const int all = (2 * FADE + 1) * (2 * FADE + 1);
+    int n = 0;
+    for (int v = y - FADE; v <= y + FADE; v++)
+        for (int u = x - FADE; u <= x + FADE; u++)
+            n += nnf->match[CLAMP(v, 0, nnf->height - 1) * nnf->width + CLAMP(u, 0, nnf->width - 1)]
+                     .frame != FL_NO_MATCH;
+    const bool here = nnf->match[y * nnf->width + x].frame != FL_NO_MATCH;
+    return (float)MAX(2 * n - all, here) / (float)all;
+}
+
+/* The last output, which fades out where matches end: there would be steps, and specks beside the
+ * fluid, which come from patches of its edge. The next frame is warped from the one with them,
+ * whose edge is not mixed with paper. */
+static uint16_t *with_smooth_limits(const FlLazy *lazy, GError **error)
 {
     const FlExemplar *exemplar = lazy->exemplar;
     const FlFluidPast *past = &lazy->last.past;
     const size_t pixels = (size_t)lazy->width * (size_t)lazy->height;
     uint16_t *rgba = fl_alloc(4 * pixels, sizeof *rgba, "a picture", error);
-    for (size_t p = 0; rgba && p < pixels; p++) {
-        if (past->nnf.match[p].frame != FL_NO_MATCH)
-            memcpy(rgba + 4 * p, past->rgba + 4 * p, 4 * sizeof *rgba);
-        else
-            for (size_t c = 0; c < 3 && !exemplar->cut_out; c++)
-                rgba[4 * p + c] = (uint16_t)(257 * exemplar->paper[c]);
-    }
+    if (!rgba)
+        return NULL;
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < lazy->height; y++)
+        for (int x = 0; x < lazy->width; x++) {
+            const size_t p = (size_t)y * (size_t)lazy->width + (size_t)x;
+            const float share = presence(&past->nnf, x, y);
+            for (size_t c = 0; c < 4; c++) {
+                const float bare = exemplar->cut_out || c == 3 ? 0 : 257.0f * exemplar->paper[c];
+                const float full = (float)past->rgba[4 * p + c];
+                rgba[4 * p + c] = (uint16_t)(bare + share * (full - bare) + .5f);
+            }
+        }
     return rgba;
 }
 
@@ -548,7 +571,7 @@ static bool write_output(const FlLazy *lazy, uint8_t *rgb, uint8_t *alpha, GErro
 {
     const size_t pixels = (size_t)lazy->width * (size_t)lazy->height;
     const float shutter = lazy->params->motion_blur;
-    g_autofree uint16_t *shown = without_specks(lazy, error), *blurred = NULL;
+    g_autofree uint16_t *shown = with_smooth_limits(lazy, error), *blurred = NULL;
     if (!shown)
         return false;
     if (shutter > 0 && lazy->motion) {
