@@ -9,7 +9,7 @@
 
 #define STEP_PX 5    // px of the page between points
 #define SLOW_PX 1.5f // px of the page a frame at which motion turns the light half way
-#define MOVED 1.7f   // strength of light and shadow in what moves, as a share of that at rest
+#define MOVED 2.0f   // strength of light and shadow in what moves, as a share of that at rest
 
 /* ---- a wash ---------------------------------------------------------------------------------- */
 
@@ -159,7 +159,8 @@ static void turn_light(const FlWashField *field, const FlPaintedRegion *painted,
     const FlDrift *drift = &painted->drift;
     const float wet = MIN((float)painted->settings->front * painted->style->front.width, 1);
     const float back = wet / (drift->pace + SLOW_PX * field->input->paper_px);
-    const float rest = 1 - back * hypotf(drift->x, drift->y);
+    const float rests = 1 - back * hypotf(drift->x, drift->y);
+    const float rest = rests * rests; // little of it in what moves, whichever way
     light[0] = rest * field->light[0] - MOVED * back * drift->x;
     light[1] = rest * field->light[1] - MOVED * back * drift->y;
 }
