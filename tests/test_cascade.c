@@ -225,7 +225,11 @@ static void values_become_those_of_svg_1(void)
         {"transform='scale(4)' stroke-width='2' vector-effect='non-scaling-stroke'", "stroke-width",
          "0.5"},
         {"d='M0 0h9v9z' style='clip-path:circle(2px)'", "clip-path", "url(#fl-clip-0)"},
-        {"style='filter:blur(1px) invert(1)'", "filter", "blur(1px) url(#fl-filter-0)"},
+        {"style='font-size:1.5em'", "font-size", "24"},
+        {"style='font-size:medium'", "font-size", "16"},
+        {"style='font:bold 20px/1 serif;stroke-width:2em'", "stroke-width", "40"},
+        {"style='filter:drop-shadow(1px 2px red)'", "filter", "url(#fl-filter-0)"},
+        {"style='filter:blur(1px) invert(1)'", "filter", "url(#fl-filter-0) url(#fl-filter-1)"},
         {"style='mask:url(#m) luminance'", "mask", "url(#m)"},
         {"style='mask-image:url(#m)'", "mask", "url(#m)"},
         {"style='stroke-width:round(down, 17px, 5px)'", "stroke-width", "15"},
@@ -380,7 +384,7 @@ static void images_keep_their_shape(void)
         {"width='100%25' height='100%25' viewBox='0 0 20 10'", "width=\"200\" height=\"100\""},
         {"width='20' viewBox='0 0 20 10'", "width=\"200\""},
         {"width='2cm' height='20mm'", "viewBox=\"0 0 75.5905512 75.5905512\""},
-        {"width='20'", "width=\"20\"/>"}};
+        {"width='20'", "width=\"20\" font-size"}};
     for (size_t i = 0; i < G_N_ELEMENTS(roots); i++) {
         g_autofree char *root =
             g_strdup_printf("&lt;svg xmlns=\"http://www.w3.org/2000/svg\" %s/&gt;", roots[i][0]);
@@ -429,6 +433,25 @@ static void gaps_of_librsvg_are_filled(void)
     assert_value("<g xml:lang='den'><style>:lang(de){fill:#123456}</style><path id='a'/></g>",
                  "fill", "");
     assert_value("<marker id='a' refX='center'/>", "refX", "");
+    assert_value("<linearGradient id='a' gradientUnits='userSpaceOnUse' x2='50%'/>", "x2", "50");
+    assert_value("<linearGradient id='a' x2='50%'/>", "x2", "50%");
+    assert_value("<clipPath><rect id='a' width='50%'/></clipPath>", "width", "50");
+    assert_value("<linearGradient id='a' style='transform:scale(2)'/>", "gradientTransform",
+                 "matrix(2, 0, 0, 2, 0, 0)");
+    assert_value("<linearGradient id='a' href='#b'/><linearGradient id='b' href='#a'/>", "href",
+                 "");
+    assert_value("<style xmlns='http://www.w3.org/1999/xhtml'>#a{fill:#123456}</style>"
+                 "<path id='a'/>",
+                 "fill", "#123456");
+    assert_value("<filter filterUnits='userSpaceOnUse' x='3'><feImage id='a' href='#b'/></filter>"
+                 "<path id='b'/>",
+                 "href", "#fl-image-0");
+    assert_value("<pattern id='p' viewBox='0 0 2 1' width='.5' height='1'><path/></pattern>"
+                 "<rect id='a' width='8' height='4' fill='url(#p)'/>",
+                 "fill", "url(#fl-turned-0)");
+    assert_value("<filter id='f'><feOffset/></filter>"
+                 "<rect id='a' width='8' height='4' filter='url(#f)' transform='rotate(9)'/>",
+                 "clip-path", "url(#fl-turned-0)");
     assert_value("<path id='a' systemLanguage='xx'/>", "display", "none");
     assert_value("<switch><path id='a' systemLanguage='xx'/></switch>", "display", "");
     assert_value("<linearGradient id='g' gradientUnits='userSpaceOnUse'/>"
@@ -468,7 +491,8 @@ static void gaps_of_librsvg_are_filled(void)
     g_assert_nonnull(strstr(text, "x2=\"0.5\""));
     g_assert_nonnull(
         strstr(text, "width=\"4\" height=\"2\" patternContentUnits=\"userSpaceOnUse\""));
-    g_assert_nonnull(strstr(text, "x=\"3\" y=\"0\"><g transform=\"matrix(8, 0, 0, 2, 0, 0)\">"));
+    g_assert_nonnull(strstr(text, "x=\"3\" y=\"0\" patternUnits=\"userSpaceOnUse\"><g "
+                                  "transform=\"matrix(8, 0, 0, 2, 0, 0)\">"));
     g_assert_nonnull(strstr(text, "xmlns:s=\"http://www.w3.org/2000/svg\" id=\"fl-turned-1\""));
     g_assert_nonnull(strstr(text, "\"fill:url(#fl-turned-1);stroke:url(#fl-turned-2)\""));
     g_assert_nonnull(strstr(text, "<g style=\"clip-path:url(#u);mix-blend-mode:normal\""));
@@ -483,6 +507,9 @@ static void a_frame_of_the_page_is_told(void)
         const char *style;
         int told;
     } pages[] = {{"padding:5px", 1},
+                 {"padding:0 4px", 1},
+                 {"padding-left:4px", 1},
+                 {"border-radius:4px", 1},
                  {"border:1px solid #ddd", 1},
                  {"padding:0;border:none", 0},
                  {"all:unset", 0},
@@ -502,15 +529,15 @@ static void each_kind_that_is_left_out_is_told_once(void)
 {
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
     g_free(computed(
-        "<style>path{backdrop-filter:blur(1px);fill:nonsense;-webkit-foo:1;cursor:help}"
-        ":has(a){fill:red}</style><path style='backdrop-filter:none'/><path id='a' d='M0 0h1' "
+        "<style>path{text-transform:uppercase;fill:nonsense;-webkit-foo:1;cursor:help}"
+        ":has(a){fill:red}</style><path style='text-transform:none'/><path id='a' d='M0 0h1' "
         "stroke='rgb(from 1 r g b)' style='mix-blend-mode:plus-lighter;word-spacing:1px'/>"
         "<text style='rotate:1deg' transform-box='fill-box'>a</text>",
         "a", "fill", warnings));
     g_assert_cmpint(fl_warnings_count(warnings), ==, 7);
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 6)->text, "“transform-box” cannot"));
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, ":has(a)"));
-    g_assert_nonnull(strstr(fl_warnings_get(warnings, 1)->text, "backdrop-filter"));
+    g_assert_nonnull(strstr(fl_warnings_get(warnings, 1)->text, "text-transform"));
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 2)->text, "nonsense"));
 }
 
@@ -543,11 +570,27 @@ static void values_that_librsvg_leaves_out_are_told(void)
         {"<text id='a' word-spacing='0'>a</text>", NULL},
         {"<text id='a' style='text-decoration:underline dotted'>a</text>", "text-decoration"},
         {"<text id='a' style='text-decoration:underline overline'>a</text>", NULL},
-        {"<filter id='f'><feFlood/></filter><path id='a' filter='url(#f)' transform='rotate(9)'/>",
+        {"<filter id='f'><feTile/></filter><path id='a' filter='url(#f)' transform='rotate(9)'/>",
          "upright"},
-        {"<filter id='f'><feFlood flood-opacity='0'/></filter>"
-         "<path id='a' filter='url(#f)' transform='rotate(9)'/>",
+        {"<filter id='f'><feFlood/></filter>"
+         "<path id='a' d='M0 0h9v9' filter='url(#f)' transform='rotate(9)'/>",
          NULL},
+        {"<g id='a' style='color-scheme:dark'/>", "color-scheme: dark"},
+        {"<g id='a' style='color-scheme:light dark;outline:0 none;backdrop-filter:blur(1px)'/>",
+         NULL},
+        {"<g id='a' style='text-shadow:none;mask-mode:match-source'/>", NULL},
+        {"<g id='a' style='mask:url(#m),url(#n)'/><mask id='m'/>", "mask: url(#m),url(#n)"},
+        {"<g id='a' style='transform:perspective(9px)'/>", NULL},
+        {"<script type='application/ld+json' id='a'/>", NULL},
+        {"<script type='text/ecmascript' id='a'/>", "script is not run"},
+        {"<style>@font-face{font-family:F}</style><path id='a'/>", NULL},
+        {"<style>@font-face{font-family:F}</style><text id='a'>a</text>", "embeds a font"},
+        {"<filter><feTurbulence id='a' stitchTiles='stitch'/></filter>", "stitchTiles"},
+        {"<filter><feImage id='a' href='#m'/></filter>", "feImage"},
+        {"<marker id='m' orient='auto'/><path id='a' d='M0 0h9v9z' marker-end='url(#m)'/>",
+         "half-way"},
+        {"<marker id='m'/><path id='a' d='M0 0h9v9z' marker-end='url(#m)'/>", NULL},
+        {"<marker id='m'/><path id='a' d='M0 0h9M0 9h9' marker-end='url(#m)'/>", NULL},
         {"<text id='a' style='text-transform:uppercase'>a</text>", "text-transform"},
         {"<text id='a' style='white-space:pre;font-palette:dark'>a</text>", NULL},
         {"<g id='a' style='display:table-row-group'/>", NULL},

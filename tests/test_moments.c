@@ -25,6 +25,18 @@ static void assert_at(const char *content, double seconds, const char *name, con
     g_assert_cmpstr(value ? value : "", ==, expected);
 }
 
+/* A step of the drawing's first filter has an attribute. */
+static void assert_step(const char *content, double seconds, const char *name, const char *expected)
+{
+    g_autoptr(FlSvg) svg = open_at(content, seconds);
+    g_autoptr(GHashTable) ids = fl_document_ids(fl_svg_document(svg));
+    const xmlNode *filter = g_hash_table_lookup(ids, "fl-filter-0");
+    const char *value = NULL;
+    for (const xmlNode *step = filter->children; step && !value; step = step->next)
+        value = fl_attribute(step, name);
+    g_assert_cmpstr(value, ==, expected);
+}
+
 static void numbers_lie_between(void)
 {
     static const struct {
@@ -231,9 +243,13 @@ static void css_has_its_values(void)
     assert_at(
         CSS("@keyframes k{from{translate:2px}to{translate:4px 8px}}#a{animation:k 1s linear}"), .5,
         "transform", "matrix(1, 0, 0, 1, 3, 4)");
-    assert_at(CSS("@keyframes k{from{filter:drop-shadow(0 0 2px #ff0000)}to{filter:drop-shadow(4px "
-                  "0 0 #0000ff) contrast(3)}}#a{animation:k 1s linear}"),
-              .5, "filter", "drop-shadow(2px 0 1px rgba(128, 0, 128, 1)) url(#fl-filter-0)");
+    const char *shadows =
+        CSS("@keyframes k{from{filter:drop-shadow(0 0 2px #ff0000)}to{filter:drop-shadow(4px "
+            "0 0 #0000ff) contrast(3)}}#a{animation:k 1s linear}");
+    assert_at(shadows, .5, "filter", "url(#fl-filter-0) url(#fl-filter-1)");
+    assert_step(shadows, .5, "dx", "2");
+    assert_step(shadows, .5, "stdDeviation", "1");
+    assert_step(shadows, .5, "flood-color", "rgb(128, 0, 128)");
     assert_at("<style>@keyframes k{to{transform:scale(2)}}#a{animation:k 1s linear}</style>"
               "<rect id='a' transform='a)'/>",
               .75, "transform", "matrix(2, 0, 0, 2, 0, 0)"); // no value is between

@@ -18,6 +18,7 @@ typedef struct Style {
     const char *colour;     // computed, of `color`
     const xmlNode *context; // the <use> whose paints are context-fill and context-stroke; or NULL
     const xmlNode *shown;   // the element that this <use> shows, as it was written
+    bool shared;            // it is content of a clip, mask, pattern or marker in user units
 } Style;
 
 typedef struct Cascade {
@@ -32,6 +33,7 @@ typedef struct Cascade {
     FlFilmLength *length;
     GHashTable *copies; // <use> -> what it shows
     int n_clips;
+    bool has_text;
 } Cascade;
 
 /** A declared value that won. */
@@ -63,6 +65,8 @@ static void warn_of_value(Cascade *c, const FlCssProperty *property, const char 
 static const char *usual_name(const char *name, const char *value)
 {
     const char *plain = g_str_has_prefix(name, "-webkit-") ? name + 8 : name;
+    if (strcmp(name, "text-decoration-line") == 0)
+        return g_intern_static_string("text-decoration");
     if (strcmp(plain, "mask-image") == 0 && g_str_has_prefix(value, "url("))
         return g_intern_static_string("mask");
     return plain != name &&
@@ -122,7 +126,9 @@ static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d)
     const bool custom = g_str_has_prefix(name, "--");
     const FlCssProperty *property = custom ? NULL : fl_css_property(name);
     if (!custom && !property) {
-        warn(c, name, d->value, "is not known");
+        if (!fl_css_has_word("none auto normal 0 inherit initial unset revert add match-source",
+                             d->value))
+            warn(c, name, d->value, "is not known");
         return;
     }
     if (property && property->kind == FL_CSS_IGNORED)
@@ -132,6 +138,8 @@ static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d)
             warn_of_animation(c, d->value);
         return;
     }
+    if (strcmp(name, "animation-timeline") == 0 && strchr(d->value, '('))
+        warn(c, name, d->value, "needs a page that scrolls");
     if (property && !fl_css_is_valid(property, d->value)) {
         warn_of_value(c, property, d->value);
         return;
@@ -257,14 +265,14 @@ static bool is_plain_length(const char *text)
 {
     char *end;
     g_ascii_strtod(text, &end);
-    return end != text && (!*end || fl_css_has_word("px % em ex in cm mm pt pc", end));
+    return end != text && (!*end || fl_css_has_word("px % in cm mm pt pc", end));
 }
 
 static double whole_of(const char *name, const FlCssUnits *units)
 {
-    return fl_css_has_word("x width cx rx x1 x2", name)    ? units->width
-           : fl_css_has_word("y height cy ry y1 y2", name) ? units->height
-           : strcmp(name, "font-size") == 0                ? units->font_size
+    return fl_css_has_word("x width cx rx x1 x2 fx", name)    ? units->width
+           : fl_css_has_word("y height cy ry y1 y2 fy", name) ? units->height
+           : strcmp(name, "font-size") == 0                   ? units->font_size
                                             : hypot(units->width, units->height) / G_SQRT2;
 }
 
@@ -339,7 +347,18 @@ static char *compute(Cascade *c, const char *name, const FlCssProperty *property
     }
 }
 
-static void set_font_size(Style *style, const char *text, bool root)
+static Value *find_value(GArray *values, const char *name)
+{
+    FL_EACH (Value, v, values)
+        if (strcmp(v->name, name) == 0)
+            return v;
+    return NULL;
+}
+
+/** Enters the size of an element's font, NULL: that around, and writes it in px, since librsvg
+ * starts at 12 px and has other words. */
+static void set_font_size(Style *style, xmlNode *node, GArray *values, const char *size,
+                          GPtrArray *owned)
 {
     static const struct {
         const char *word;
@@ -347,6 +366,8 @@ static void set_font_size(Style *style, const char *text, bool root)
     } words[] = {{"xx-small", .5625}, {"x-small", .625},    {"small", .8125}, {"medium", 1},
                  {"large", 1.125},    {"x-large", 1.5},     {"xx-large", 2},  {"xxx-large", 3},
                  {"larger", -1.2},    {"smaller", -1 / 1.2}};
+    const char *text = size ? size : "";
+    Value *written = find_value(values, "font-size");
     double value = 0;
     if (fl_css_number(text, &style->units, style->units.font_size, &value) && value > 0)
         style->units.font_size = value;
@@ -355,8 +376,14 @@ static void set_font_size(Style *style, const char *text, bool root)
             style->units.font_size = words[i].factor > 0
                                          ? 16 * words[i].factor
                                          : -words[i].factor * style->units.font_size;
-    if (root)
+    if (fl_is_root(node))
         style->units.root_font_size = style->units.font_size;
+    char *px = fl_css_number_text(style->units.font_size);
+    g_ptr_array_add(owned, px);
+    if (written)
+        written->text = px;
+    else
+        fl_set_attribute(node, "font-size", px);
 }
 
 /* ---- animated values ------------------------------------------------------------------------- */
@@ -368,14 +395,6 @@ typedef struct Animated {
     GArray *values;   // Value
     GPtrArray *owned; // the texts of animated values
 } Animated;
-
-static Value *find_value(GArray *values, const char *name)
-{
-    FL_EACH (Value, v, values)
-        if (strcmp(v->name, name) == 0)
-            return v;
-    return NULL;
-}
 
 static const char *underlying_value(const void *data, const char *name)
 {
@@ -464,6 +483,35 @@ static void compute_attributes(Cascade *c, xmlNode *node, const Style *style)
     }
 }
 
+/** Returns: true if one of the attributes of an element that name units has that word. */
+static bool has_units(const xmlNode *node, const char *names, const char *word)
+{
+    g_auto(GStrv) name = fl_css_split(names, ' ');
+    bool found = false;
+    for (int i = 0; name[i] && !found; i++)
+        found = g_strcmp0(fl_attribute(node, name[i]), word) == 0;
+    return found;
+}
+
+/** Percentages of what shapes share are of the viewport in which it is written; librsvg takes that
+ * of the shape. */
+static void fix_percentages(xmlNode *node, Style *style)
+{
+    if (style->shared || has_units(node, "gradientUnits patternUnits maskUnits", "userSpaceOnUse"))
+        for (xmlAttr *a = node->properties, *next; a; a = next) {
+            const char *name = (const char *)a->name, *text = fl_attribute(node, name);
+            double value;
+            next = a->next;
+            if (text && g_str_has_suffix(text, "%") &&
+                fl_css_has_word("x y width height cx cy r rx ry x1 y1 x2 y2 fx fy fr", name) &&
+                fl_css_number(text, &style->units, whole_of(name, &style->units), &value))
+                fl_set_numbers(node, name, &value, 1);
+        }
+    style->shared |=
+        fl_is_one_of(node, "clipPath mask pattern marker") &&
+        !has_units(node, "clipPathUnits maskContentUnits patternContentUnits", "objectBoundingBox");
+}
+
 /** Returns: true if a property places an element; Chromium leaves those of nested <svg> out. */
 static bool takes_geometry(const xmlNode *node, const char *name)
 {
@@ -528,6 +576,21 @@ static char *own_value(Cascade *c, const xmlNode *node, GArray *values, const ch
     return written;
 }
 
+/** The size in a value of `font`, "bold 12px/1.2 serif", to be freed; NULL without one. */
+static char *size_in_font(const char *font, const FlCssUnits *units)
+{
+    g_auto(GStrv) part = fl_css_split(font, ' ');
+    for (int i = 0; part[i]; i++) {
+        double value;
+        part[i][strcspn(part[i], "/")] = '\0';
+        const char *end = part[i] + strlen(part[i]);
+        if (end > part[i] && !g_ascii_isdigit(end[-1]) &&
+            fl_css_number(part[i], units, units->font_size, &value))
+            return fl_css_number_text(value);
+    }
+    return NULL;
+}
+
 static void visit(Cascade *c, xmlNode *node, const Style *around)
 {
     const char *written = fl_attribute(node, "style");
@@ -548,16 +611,21 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
         style.colour = colour ? colour : style.colour;
     }
     g_autofree char *font_size = own_value(c, node, values, "font-size", &style);
-    if (font_size)
-        set_font_size(&style, font_size, fl_is_root(node));
+    const Value *font = find_value(values, "font");
+    if (font && !font_size)
+        font_size = size_in_font(font->text, &style.units);
+    if (font_size || fl_is_root(node))
+        set_font_size(&style, node, values, font_size, owned);
     GString *text = g_string_new(NULL);
     compute_attributes(c, node, &style);
     FL_EACH (const Value, v, values)
         if (v->property)
             apply(c, node, v, &style, text, &effects);
+    fix_percentages(node, &style);
     if (values->len > 0 || own->len > 0)
         fl_set_attribute(node, "style", text->str);
     g_string_free(text, TRUE);
+    c->has_text |= fl_is(node, "text");
     xmlNode *copy = g_hash_table_lookup(c->copies, node);
     if (copy) {
         fl_use_give_size(node, copy);
@@ -619,12 +687,16 @@ bool fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
     g_autoptr(GHashTable) copies = fl_uses_copy(doc, path, error);
     if (!copies)
         return false;
-    Cascade c = {path, number, warnings, sheet, rules, {0}, said, seconds, length, copies, 0};
+    Cascade c = {path, number,  warnings, sheet,  rules, {0},
+                 said, seconds, length,   copies, 0,     false};
     visit(&c, root,
           &(Style){
               .variables = sheet->initial, .own = sheet->own, .units = units, .colour = "black"});
     fl_uses_make_groups(copies); // now that all selectors have been matched
     fl_css_keep_strokes(root, &units);
+    if (sheet->embeds_font && c.has_text)
+        fl_warnings_add(warnings, path, number, NULL,
+                        "“@font-face” embeds a font; one of the system is drawn");
     if (c.work.steps > FL_SELECTOR_STEPS)
         fl_warnings_add(warnings, path, number, NULL,
                         "its selectors take too long to match; the rest of the styles is left out");

@@ -26,10 +26,10 @@ static char *value_or_attribute(GHashTable *effects, const xmlNode *node, const 
     return value && *value ? g_strdup(value) : attribute ? g_strdup(attribute) : NULL;
 }
 
-static void set_matrix(xmlNode *node, const FlAffine *m)
+static void set_matrix(xmlNode *node, const char *name, const FlAffine *m)
 {
     g_autofree char *text = fl_affine_text(m);
-    fl_set_attribute(node, "transform", text);
+    fl_set_attribute(node, name, text);
 }
 
 /* ---- boxes ----------------------------------------------------------------------------------- */
@@ -151,8 +151,12 @@ static bool multiply_offset(FlAffine *all, GHashTable *effects, const FlCssUnits
 static const char *apply_transform(GHashTable *effects, xmlNode *node, const FlCssUnits *units)
 {
     const char *css = get(effects, "transform");
+    const char *name = fl_is(node, "pattern") ? "patternTransform"
+                       : g_str_has_suffix((const char *)node->name, "Gradient")
+                           ? "gradientTransform"
+                           : "transform";
     g_autofree char *origin_text = value_or_attribute(effects, node, "transform-origin");
-    const char *attribute = css ? NULL : fl_attribute(node, "transform");
+    const char *attribute = css ? NULL : fl_attribute(node, name);
     const char *translate = value_of(effects, "translate"), *rotate = value_of(effects, "rotate");
     const char *scale = value_of(effects, "scale");
     const bool moves = css || translate || rotate || scale || value_of(effects, "offset-path") ||
@@ -183,8 +187,11 @@ static const char *apply_transform(GHashTable *effects, xmlNode *node, const FlC
         return "offset-path";
     multiply(&all, &own);
     multiply(&all, &back);
-    set_matrix(node, &all);
-    return bad_origin ? "transform-origin" : !known ? "transform-box" : flat ? NULL : "perspective";
+    set_matrix(node, name, &all);
+    return bad_origin                  ? "transform-origin"
+           : !known                    ? "transform-box"
+           : flat || !fl_is_root(node) ? NULL // browsers draw shapes flat as well
+                                       : "perspective";
 }
 
 /* ---- clips, backgrounds, dashes -------------------------------------------------------------- */
@@ -255,7 +262,9 @@ static const char *apply_mask(GHashTable *effects, xmlNode *node)
     for (int i = 1; part[0] && part[i]; i++)
         if (!fl_css_has_word("luminance match-source no-clip add", part[i]))
             return "mask";
-    return part[0] && strchr(part[0], '(') && !g_str_has_prefix(part[0], "url(") ? "mask" : NULL;
+    const bool one = !strchr(value, ',') || strstr(value, "data:");
+    return part[0] && strchr(part[0], '(') && !(one && g_str_has_prefix(part[0], "url(")) ? "mask"
+                                                                                          : NULL;
 }
 
 /** The matrix of a filter function that changes colours [Filter Effects 1 §9]; false if it is
@@ -287,14 +296,11 @@ static bool colour_matrix(const char *name, double v, double m[3][4])
     return !isnan(m[0][0]);
 }
 
-/** Adds a <filter> that does in sRGB, as CSS wants it, what a function does in librsvg in linear
- * light. Returns: its url(), to be freed; NULL for another function. */
-static char *add_filter(xmlNode *node, const char *function, const FlCssUnits *units, int *n)
+/** Adds the step of a function that changes colours; NULL: it is another function. */
+static xmlNode *add_matrix(xmlNode *filter, const char *name, double v)
 {
-    g_autofree char *name = NULL, *arguments = NULL;
-    double v = 1, m[3][4];
-    if (!fl_css_call(function, &name, &arguments) ||
-        (*arguments && !fl_css_number(arguments, units, 1, &v)) || !colour_matrix(name, v, m))
+    double m[3][4];
+    if (!colour_matrix(name, v, m))
         return NULL;
     GString *values = g_string_new(NULL);
     for (int i = 0; i < 12; i++) {
@@ -302,16 +308,65 @@ static char *add_filter(xmlNode *node, const char *function, const FlCssUnits *u
         g_string_append_printf(values, i % 4 == 3 ? "0 %s " : "%s ", number);
     }
     g_string_append(values, "0 0 0 1 0");
-    g_autofree char *id = g_strdup_printf("fl-filter-%d", (*n)++);
-    xmlNode *filter = add_child(xmlDocGetRootElement(node->doc), "filter");
     xmlNode *matrix = add_child(filter, "feColorMatrix");
+    fl_set_attribute(matrix, "values", values->str);
+    g_string_free(values, TRUE);
+    return matrix;
+}
+
+/** Adds the step of drop-shadow(), whose colour is before or after its lengths. */
+static xmlNode *add_shadow(xmlNode *filter, const char *arguments, const FlCssUnits *units,
+                           const char *current)
+{
+    static const char *const names[] = {"dx", "dy", "stdDeviation"};
+    xmlNode *shadow = add_child(filter, "feDropShadow");
+    g_auto(GStrv) part = fl_css_split(arguments, ' ');
+    const char *word = "currentColor";
+    fl_set_attribute(shadow, "stdDeviation", "0");
+    for (int i = 0, n = 0; part[i]; i++) {
+        double v;
+        if (n < 3 && fl_css_number(part[i], units, 0, &v))
+            fl_set_numbers(shadow, names[n++], &v, 1);
+        else
+            word = part[i];
+    }
+    g_autofree char *colour = fl_css_colour_with(word, current ? current : "black");
+    fl_set_attribute(shadow, "flood-color",
+                     g_ascii_strcasecmp(word, "currentColor") == 0 ? current : colour);
+    return shadow;
+}
+
+/** Adds a <filter> that does in sRGB, as CSS wants it, what a function does in librsvg in linear
+ * light. Returns: its url(), to be freed; NULL for another function. */
+static char *add_filter(xmlNode *node, const char *function, const FlCssUnits *units, int *n)
+{
+    g_autofree char *name = NULL, *arguments = NULL;
+    double v = 1;
+    if (!fl_css_call(function, &name, &arguments))
+        return NULL;
+    const bool shadow = strcmp(name, "drop-shadow") == 0;
+    if (*arguments && !shadow && !fl_css_number(arguments, units, 1, &v))
+        return NULL;
+    g_autofree char *id = g_strdup_printf("fl-filter-%d", *n);
+    xmlNode *filter = add_child(xmlDocGetRootElement(node->doc), "filter");
+    const bool blur = strcmp(name, "blur") == 0 && *arguments;
+    g_autofree char *current = fl_inherited_property(node, "color");
+    xmlNode *step = shadow ? add_shadow(filter, arguments, units, current)
+                    : blur ? add_child(filter, "feGaussianBlur")
+                           : add_matrix(filter, name, v);
+    if (!step) {
+        xmlUnlinkNode(filter);
+        xmlFreeNode(filter);
+        return NULL;
+    }
+    (*n)++;
+    if (blur)
+        fl_set_numbers(step, "stdDeviation", &v, 1);
     fl_set_attribute(filter, "id", id);
     fl_set_attribute(filter, "filterUnits", "userSpaceOnUse");
     fl_set_attribute(filter, "x", "-100%"), fl_set_attribute(filter, "y", "-100%");
     fl_set_attribute(filter, "width", "300%"), fl_set_attribute(filter, "height", "300%");
-    fl_set_attribute(matrix, "color-interpolation-filters", "sRGB");
-    fl_set_attribute(matrix, "values", values->str);
-    g_string_free(values, TRUE);
+    fl_set_attribute(step, "color-interpolation-filters", "sRGB");
     return g_strdup_printf("url(#%s)", id);
 }
 
@@ -362,11 +417,15 @@ static const char *apply_background(GHashTable *effects, xmlNode *node, const Fl
 /** Returns: a property that makes the page smaller than its drawing; NULL: none. */
 static const char *frame_of_page(GHashTable *effects, const xmlNode *node)
 {
-    static const char *const names[] = {"border", "padding"};
-    for (int i = 0; i < 2 && fl_is_root(node); i++) {
+    static const char *const names[] = {"border",        "border-radius", "padding",
+                                        "padding-left",  "padding-right", "padding-top",
+                                        "padding-bottom"};
+    for (size_t i = 0; i < G_N_ELEMENTS(names) && fl_is_root(node); i++) {
         const char *value = value_of(effects, names[i]);
-        if (value && strpbrk(value, "123456789") && *value != '0' && !strstr(value, "none"))
-            return names[i];
+        g_auto(GStrv) part = fl_css_split(value && !strstr(value, "none") ? value : "", ' ');
+        for (int k = 0; part[k]; k++)
+            if (g_ascii_strtod(part[k], NULL) > 0)
+                return names[i];
     }
     return NULL;
 }
@@ -454,7 +513,7 @@ static void apply_light(xmlNode *node)
 const char *fl_css_effects_apply(GHashTable *effects, xmlNode *node, const FlCssUnits *units,
                                  int *n_clips)
 {
-    const char *vector = get(effects, "vector-effect");
+    const char *vector = get(effects, "vector-effect"), *space = get(effects, "white-space");
     const char *problem = apply_path(effects, node);
     if (vector)
         fl_set_attribute(node, "vector-effect", vector);
@@ -466,6 +525,9 @@ const char *fl_css_effects_apply(GHashTable *effects, xmlNode *node, const FlCss
     apply_path_length(node, units);
     apply_light(node);
     fl_set_attribute(node, "transform-origin", NULL);
+    if (space && *space && strcmp(space, "inherit") != 0)
+        xmlNodeSetSpacePreserve(
+            node, fl_css_has_word("pre pre-wrap break-spaces preserve preserve-spaces", space));
     return problem      ? problem
            : clip       ? clip
            : transform  ? transform
@@ -498,7 +560,7 @@ static void keep_stroke(xmlNode *node, const FlAffine *around, const FlAffine *a
     }
     xmlNodeSetName(node, (const xmlChar *)"path");
     fl_set_attribute(node, "d", d);
-    set_matrix(node, &back);
+    set_matrix(node, "transform", &back);
 }
 
 static void visit_strokes(FlInheritance *pages, xmlNode *node, const FlCssUnits *units)

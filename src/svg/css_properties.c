@@ -14,17 +14,20 @@ static const FlCssProperty known[] = {
 /** Properties of pages and programs, which change no still picture of a drawing; the rest of a name
  * may follow. */
 static const char ignored[] =
-    "- accent- align- animation- appearance aspect- block- border bottom box- break- caret- "
-    "color-adjust color-rendering color-scheme column contain content-visibility cursor flex "
-    "float font-feature- font-kerning font-optical- font-smooth font-synthesis font-variant- "
-    "font-variation- gap grid hyphens inline-size inset justify- kerning left list- margin max- "
-    "min- object- offset-position order orphans outline- overscroll- padding perspective-origin "
-    "place- pointer-events position print-color-adjust quotes resize right row- scroll solid- "
-    "speak tab-size table- text-align text-indent text-overflow text-size-adjust text-wrap top "
-    "touch- transform-style transition user-select vertical-align white-space widows "
-    "will-change word-break word-wrap z-index zoom shape- text-underline- text-decoration- "
-    "text-emphasis isolate view-transition- counter- interpolate- overflow- font-palette "
-    "font-language- font-display src line-break hanging- ruby- math-";
+    "- accent- align- animation- appearance aspect- backdrop- background-attachment "
+    "background-clip background-origin background-position background-repeat block- border bottom "
+    "box- break- caption- caret- clip color-adjust color-rendering column contain "
+    "content-visibility corner- counter- cursor dynamic-range empty- field- flex float "
+    "font-display font-feature- font-kerning font-language- font-optical- font-palette "
+    "font-smooth font-synthesis font-variant- font-variation- forced- gap grid hanging- hyphens "
+    "inline-size inset interpolate- isolate justify- kerning left line-break list- margin "
+    "mask-border mask-clip mask-origin mask-position mask-repeat mask-size math- max- min- "
+    "object- offset-position order orphans outline- overflow- overscroll- padding "
+    "perspective-origin place- pointer-events position print-color-adjust quotes resize right "
+    "row- ruby- rule- scroll shape- solid- speak src tab-size table- text-align text-autospace "
+    "text-decoration- text-emphasis text-indent text-overflow text-size-adjust text-underline- "
+    "text-wrap top touch- transform-style transition user-select vertical-align white-space "
+    "widows will-change word-break word-wrap z-index zoom view-";
 
 static const FlCssProperty harmless = {"", FL_CSS_IGNORED, false, NULL, NULL};
 
@@ -79,6 +82,13 @@ char *fl_css_word(const FlCssProperty *property, const char *value)
     return NULL;
 }
 
+/** Returns: true for "0px", "0 none", and the scheme "light dark". */
+static bool is_nothing(const char *value)
+{
+    return strstr(value, "none") || strstr(value, "light") ||
+           (is_number(value) && g_ascii_strtod(value, NULL) == 0);
+}
+
 /** Returns: true for several lines at once: "underline overline". */
 static bool is_words(const FlCssProperty *property, const char *value)
 {
@@ -110,7 +120,7 @@ bool fl_css_is_valid(const FlCssProperty *property, const char *value)
     case FL_CSS_PAINT:
         return colour != NULL;
     case FL_CSS_ABSENT:
-        return strcmp(value, "0") == 0; // or none
+        return is_nothing(value);
     case FL_CSS_TRANSFORM:
         return strcmp(property->name, "offset") != 0; // a shorthand; <stop> has it as attribute
     case FL_CSS_NUMBER:

@@ -402,7 +402,7 @@ static void read_at_rule(Reader *reader, const char *name, const char *prelude, 
     } else if (strcmp(name, "property") == 0 && block)
         read_property(reader, prelude, block);
     else if (strcmp(name, "font-face") == 0)
-        warn(reader, "rule", "@font-face", "embeds a font; one of the system is drawn");
+        reader->sheet->embeds_font = true;
     else if (!fl_css_has_word("charset page view-transition starting-style font-feature-values "
                               "counter-style position-try",
                               name)) {
@@ -462,7 +462,7 @@ static void take_link(Reader *reader, const xmlNode *node, const Place *place)
 static void take_elements(Reader *reader, xmlNode *node, const Place *place)
 {
     FL_EACH_ELEMENT (child, node)
-        if (fl_is(child, "style"))
+        if (xmlStrEqual(child->name, (xmlChar *)"style")) // HTML's as well
             take_element(reader, child, place);
         else if (xmlStrEqual(child->name, (xmlChar *)"link"))
             take_link(reader, child, place);

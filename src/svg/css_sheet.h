@@ -32,6 +32,7 @@ typedef struct FlCssSheet {
     GHashTable *keyframes; // name -> GArray of FlCssKeyframe
     GHashTable *initial;   // values of @property, interned name -> text
     GHashTable *own;       // interned names of @property that children do not inherit
+    bool embeds_font;
 } FlCssSheet;
 
 /**

@@ -77,6 +77,15 @@ char *fl_href(const xmlNode *node)
     return plain ? g_strdup(plain) : fl_foreign_attribute(node, "href");
 }
 
+void fl_drop_href(xmlNode *node)
+{
+    for (xmlAttr *a = node->properties, *next; a; a = next) {
+        next = a->next;
+        if (g_str_has_suffix((const char *)a->name, "href"))
+            xmlRemoveProp(a);
+    }
+}
+
 char *fl_property(const xmlNode *node, const char *name)
 {
     xmlAttr *own = NULL, *style = NULL; // looked for at once, since most elements have none

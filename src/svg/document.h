@@ -79,6 +79,9 @@ char *fl_foreign_attribute(const xmlNode *node, const char *name);
  */
 char *fl_href(const xmlNode *node);
 
+/** Removes the href of an element, with whatever prefix. */
+void fl_drop_href(xmlNode *node);
+
 /** Returns: true if node is an element of SMIL that animates another. */
 bool fl_is_animation(const xmlNode *node);
 

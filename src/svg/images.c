@@ -104,6 +104,33 @@ static void replace_webp(const Check *check, xmlNode *node, xmlAttr *a, const ch
              "is animated or damaged, or this build reads no WebP, and is left out");
 }
 
+/** A JPEG picture that its camera turned (EXIF), upright as a PNG in a data: URL; NULL: it is
+ * upright already. *size: its own, which has been checked; to be freed. */
+static char *turned_jpeg(const xmlNode *node, const guint8 *data, gsize bytes, int size[2])
+{
+    g_autofree char *wish = fl_inherited_property(node, "image-orientation"), *png = NULL;
+    const gsize head = MIN(bytes, BLOCK);
+    gsize at = 0;
+    while (at + 4 < head && memcmp(data + at, "Exif", 4) != 0)
+        at++;
+    if (g_strcmp0(wish, "none") == 0 || at + 4 >= head)
+        return NULL;
+    g_autoptr(GdkPixbufLoader) loader = gdk_pixbuf_loader_new();
+    gsize n = 0;
+    const bool read = gdk_pixbuf_loader_write(loader, data, bytes, NULL);
+    if (!gdk_pixbuf_loader_close(loader, NULL) || !read)
+        return NULL;
+    GdkPixbuf *picture = gdk_pixbuf_loader_get_pixbuf(loader);
+    const char *turn = picture ? gdk_pixbuf_get_option(picture, "orientation") : NULL;
+    g_autoptr(GdkPixbuf) upright =
+        turn && *turn != '1' ? gdk_pixbuf_apply_embedded_orientation(picture) : NULL;
+    if (!upright || !gdk_pixbuf_save_to_buffer(upright, &png, &n, "png", NULL, NULL))
+        return NULL;
+    size[0] = gdk_pixbuf_get_width(upright), size[1] = gdk_pixbuf_get_height(upright);
+    g_autofree char *coded = g_base64_encode((const guchar *)png, n);
+    return g_strconcat("data:image/png;base64,", coded, NULL);
+}
+
 /** The text behind %-escapes; a % without digits stays, as in a browser. */
 static char *unescape(const char *text)
 {
@@ -119,7 +146,7 @@ static char *unescape(const char *text)
 }
 
 /** Gives a drawing many pixels, which librsvg makes before it scales it to its place in a node. */
-static void enlarge(xmlNode *root, const xmlNode *node)
+static void enlarge(xmlNode *root, xmlNode *node)
 {
     const double sides[2] = {side_of(root, "width"), side_of(root, "height")};
     double box[4] = {0, 0, sides[0], sides[1]};
@@ -130,8 +157,10 @@ static void enlarge(xmlNode *root, const xmlNode *node)
     const double place = fmax(side_of(node, "width"), side_of(node, "height"));
     const double scale = place > 0 ? ENLARGED * place / fmax(size[0], size[1]) : 1;
     const double large[] = {size[0] * scale, size[1] * scale};
-    if (!has_box)
+    if (!has_box) {
         fl_set_numbers(root, "viewBox", (double[]){0, 0, size[0], size[1]}, 4);
+        fl_set_attribute(node, "preserveAspectRatio", "none"); // as in Chromium
+    }
     fl_set_numbers(root, "width", &large[0], 1);
     fl_set_numbers(root, "height", &large[1], 1);
 }
@@ -179,8 +208,11 @@ static bool check_data(const Check *check, xmlNode *node, xmlAttr *a, const char
     size_of_data(data, bytes, size);
     if (!check_pixels(check, size[0], size[1], error))
         return false;
+    g_autofree char *upright = turned_jpeg(node, data, bytes, size);
     complete_size(node, size);
-    if (g_strcmp0(kind, "image/webp") == 0)
+    if (upright)
+        xmlSetNsProp(node, a->ns, a->name, (const xmlChar *)upright);
+    else if (g_strcmp0(kind, "image/webp") == 0)
         replace_webp(check, node, a, href, data, bytes);
     else if (size[0] == 0)
         warn(check, node, href, "cannot be read and is left out");
@@ -204,11 +236,15 @@ static bool check_file(const Check *check, xmlNode *node, xmlAttr *a, const char
         return true;
     }
     const bool known = gdk_pixbuf_get_file_info(file, &size[0], &size[1]) != NULL;
+    if (known && !check_pixels(check, size[0], size[1], error))
+        return false;
+    const bool read = g_file_get_contents(file, &data, &bytes, NULL);
+    g_autofree char *upright =
+        known && read ? turned_jpeg(node, (const guint8 *)data, bytes, size) : NULL;
+    if (upright)
+        xmlSetNsProp(node, a->ns, a->name, (const xmlChar *)upright);
     complete_size(node, size);
-    if (known)
-        return check_pixels(check, size[0], size[1], error);
-    if (!g_file_get_contents(file, &data, &bytes, NULL) ||
-        g_strcmp0(kind_of((const guint8 *)data, bytes), "image/webp") != 0)
+    if (known || !read || g_strcmp0(kind_of((const guint8 *)data, bytes), "image/webp") != 0)
         return true;
     (void)fl_webp_size((const guint8 *)data, bytes, size);
     if (!check_pixels(check, size[0], size[1], error))

@@ -26,8 +26,7 @@ double fl_length_in(const FlInheritance *inheritance, const xmlNode *node, const
     return read ? px : initial;
 }
 
-/** Maps a viewBox into a viewport of width x height, as preserveAspectRatio says. */
-static FlAffine fit_box(const double box[4], double width, double height, const char *ratio)
+FlAffine fl_fit_box(const double box[4], double width, double height, const char *ratio)
 {
     double sx = width / box[2], sy = height / box[3];
     double ax = 0.5, ay = 0.5;
@@ -69,7 +68,7 @@ static void enter_viewport(const FlInheritance *inheritance, const xmlNode *node
         s->clipped |= !shown;
     }
     if (box[2] > 0 && box[3] > 0) {
-        const FlAffine fit = fit_box(box, s->width, s->height, ratio);
+        const FlAffine fit = fl_fit_box(box, s->width, s->height, ratio);
         s->ctm = fl_affine_multiply(&s->ctm, &fit);
         s->width = box[2], s->height = box[3];
     }

@@ -35,6 +35,10 @@ typedef struct FlInheritance {
     GStringChunk *text;
 } FlInheritance;
 
+/** Maps a viewBox into a viewport of width x height, as preserveAspectRatio says; `ratio` may be
+ * NULL. */
+FlAffine fl_fit_box(const double box[4], double width, double height, const char *ratio);
+
 FlInheritance fl_inheritance_of(double dpi, FlPageSize page);
 void fl_inheritance_clear(FlInheritance *inheritance);
 

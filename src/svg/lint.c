@@ -192,6 +192,16 @@ static bool has_value(const xmlNode *node, const char *property, const char *wan
     return value && strcmp(value, wanted) == 0;
 }
 
+/** Returns: true if a marker of a path turns with it. */
+static bool turns(const Lint *lint, const xmlNode *path, const char *name)
+{
+    g_autofree char *own = fl_inherited_property(path, name);
+    g_autofree char *value = own ? g_steal_pointer(&own) : fl_inherited_property(path, "marker");
+    const xmlNode *marker = fl_referred_by(value, "marker", lint->ids);
+    const char *orient = marker ? fl_attribute(marker, "orient") : NULL;
+    return orient && g_str_has_prefix(orient, "auto");
+}
+
 /** Warns of values that librsvg leaves out. */
 static void check_values(const Lint *lint, const xmlNode *node)
 {
@@ -207,10 +217,19 @@ static void check_values(const Lint *lint, const xmlNode *node)
     if (fl_is(node, "clipPath") && has_value(node, "clipPathUnits", "objectBoundingBox") &&
         fl_attribute(node, "transform"))
         warn(lint, node, "the transform of a clip path in units of the box is applied in the box");
+    if (fl_is(node, "feTurbulence") && has_value(node, "stitchTiles", "stitch"))
+        warn(lint, node, "stitchTiles is left out: the texture is another one");
+    g_autofree char *shown = fl_is(node, "feImage") ? fl_href(node) : NULL;
+    if (shown && *shown == '#' && !fl_attribute(node, "x") &&
+        !has_value(node->parent, "filterUnits", "userSpaceOnUse"))
+        warn(lint, node,
+             "what <feImage> shows is drawn at its place on the page, not in the filter");
     const char *d = fl_is(node, "path") ? fl_attribute(node, "d") : NULL;
-    if (d && strpbrk(d + (*d != '\0'), "Mm") &&
-        (fl_is_set(node, "marker-mid") || fl_is_set(node, "marker-start")))
+    if (d && strpbrk(d + (*d != '\0'), "Mm") && fl_is_set(node, "marker-mid"))
         warn(lint, node, "markers where a path begins anew may turn another way or be left out");
+    if (d && strpbrk(d, "Zz") &&
+        (turns(lint, node, "marker-start") || turns(lint, node, "marker-end")))
+        warn(lint, node, "the markers where a path closes do not turn half-way between its sides");
     g_autofree char *clip = fl_is(node->parent, "clipPath") ? fl_property(node, "clip-path") : NULL;
     if (clip && strcmp(clip, "none") != 0)
         warn(lint, node, "the clip of a shape in a clip path is left out");
@@ -222,7 +241,8 @@ static void lint_node(const Lint *lint, xmlNode *node)
     check_values(lint, node);
     if (node->ns && strcmp((const char *)node->name, "include") == 0)
         warn(lint, node, "the file of <include> is drawn without the styles of the drawing");
-    if (fl_is(node, "script"))
+    const char *type = fl_is(node, "script") ? fl_attribute(node, "type") : "data";
+    if (!type || !*type || strstr(type, "script") || strcmp(type, "module") == 0)
         warn(lint, node, "its script is not run: the drawing is shown as it was written");
     if (fl_is(node, "foreignObject"))
         check_foreign(lint, node);

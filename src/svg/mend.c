@@ -8,7 +8,7 @@
 #include "svg/transform.h"
 #include <string.h>
 
-#define MOST_CLIPS 16 // of clip paths that clip each other
+#define MOST_CLIPS 16 // of clip paths that clip each other, and of templates
 
 typedef struct Mend {
     GHashTable *ids; // id -> xmlNode, the first of that id
@@ -158,7 +158,10 @@ static void mend_image(xmlNode *step, int number)
 {
     g_autofree char *href = fl_href(step);
     const FlCssUnits units = {.font_size = 16, .root_font_size = 16};
-    const double x = fl_length_of(step, "x", &units, 0), y = fl_length_of(step, "y", &units, 0);
+    const xmlNode *filter = step->parent;
+    const bool in_page = g_strcmp0(fl_attribute(filter, "filterUnits"), "userSpaceOnUse") == 0;
+    const xmlNode *place = in_page && !fl_attribute(step, "x") ? filter : step;
+    const double x = fl_length_of(place, "x", &units, 0), y = fl_length_of(place, "y", &units, 0);
     if (!href || *href != '#' || (x == 0 && y == 0))
         return;
     const FlAffine move = {1, 0, 0, 1, x, y};
@@ -189,7 +192,7 @@ static void mend_gradient(xmlNode *node)
     const double across = share_of(node, "x2", 1) - share_of(node, "x1", 0);
     const double down = share_of(node, "y2", 0) - share_of(node, "y1", 0);
     const bool long_enough = linear ? across != 0 || down != 0 : !(share_of(node, "r", .5) <= 0);
-    if (long_enough || template)
+    if (long_enough || template || fl_is(node, "pattern"))
         return;
     if (!linear) // librsvg draws nothing without a radius
         fl_set_attribute(node, "r", "1");
@@ -198,6 +201,19 @@ static void mend_gradient(xmlNode *node)
         stop = stop->prev;
     while (stop && (stop = xmlPreviousElementSibling(stop)))
         xmlNodeSetName(stop, (const xmlChar *)"desc"); // kept, since its id may be referred to
+}
+
+/** Takes its template from a gradient or pattern that is a template of itself: librsvg would draw
+ * neither. */
+static void mend_circle(const Mend *m, xmlNode *server)
+{
+    const xmlNode *at = server;
+    for (int k = 0; at && k < MOST_CLIPS; k++) {
+        g_autofree char *href = fl_href(at);
+        at = href && *href == '#' ? g_hash_table_lookup(m->ids, href + 1) : NULL;
+        if (at == server)
+            fl_drop_href(server);
+    }
 }
 
 /* ---- lists of points ------------------------------------------------------------------------- */
@@ -371,9 +387,10 @@ static void mend(Mend *m, xmlNode *node)
         mend_image(node, m->n_made++);
     else if (fl_is(node, "filter"))
         mend_inputs(node);
-    else if (fl_is_one_of(node, "linearGradient radialGradient"))
+    else if (fl_is_one_of(node, "linearGradient radialGradient pattern")) {
+        mend_circle(m, node);
         mend_gradient(node);
-    else if (fl_is_one_of(node, "polygon polyline"))
+    } else if (fl_is_one_of(node, "polygon polyline"))
         mend_points(node);
     else if (fl_is(node, "text") || fl_is(node, "tspan"))
         mend_baseline(node);
@@ -383,6 +400,8 @@ static void mend(Mend *m, xmlNode *node)
         next = child->next;
         if (child->type != XML_ELEMENT_NODE)
             continue;
+        if (!child->ns) // librsvg takes it for SVG
+            xmlNodeSetName(child, (const xmlChar *)"desc");
         mend_words(child);
         mend(m, child);
         mend_blend(m, child);

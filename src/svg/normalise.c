@@ -87,7 +87,7 @@ bool fl_is_eligible(const xmlNode *node)
         return false;
     const char *extensions = fl_attribute(node, "requiredExtensions");
     const char *languages = fl_attribute(node, "systemLanguage");
-    return (!extensions || !*fl_css_space(extensions)) && (!languages || speaks(languages));
+    return !extensions && (!languages || speaks(languages));
 }
 
 /** Ineligible children go into a <defs>, where references still find them. */

@@ -182,7 +182,7 @@ static void set_value(xmlNode *node, const char *name, const char *value)
     for (xmlAttr *a = node->properties; a; a = a->next)
         foreign = a->ns && strcmp((const char *)a->name, name) == 0 ? a : foreign;
     if (declared)
-        fl_declare(node, "%s:%s !important", name, value);
+        fl_declare(node, "%s:%s", name, value);
     if (declared && !place)
         return;
     if (foreign) {

@@ -49,19 +49,37 @@ static void turn_blur(xmlNode *step, const FlAffine *m)
 /** Returns: true if librsvg draws a step upright where a browser turns it with its shape. */
 static bool is_upright(const xmlNode *step)
 {
-    const xmlNode *next = xmlNextElementSibling((xmlNode *)step);
-    g_autofree char *opacity = fl_property(step, "flood-opacity");
-    if (fl_is(step, "feFlood") &&
-        ((opacity && g_ascii_strtod(opacity, NULL) == 0) || (next && fl_is(next, "feComposite"))))
-        return false; // there is none, or that cuts it
     return xmlHasProp((xmlNode *)step, (xmlChar *)"width") ||
-           fl_is_one_of(step, "feTurbulence feTile feImage feDisplacementMap feFlood "
-                              "feConvolveMatrix");
+           fl_is_one_of(step, "feTurbulence feTile feImage feDisplacementMap feConvolveMatrix");
+}
+
+/** Cuts what a filter makes of a turned element to its region, which librsvg leaves upright. */
+static void cut_region(Turned *t, xmlNode *node, xmlNode *filter)
+{
+    static const char *const names[] = {"x", "y", "width", "height"};
+    const bool in_page = g_strcmp0(fl_attribute(filter, "filterUnits"), "userSpaceOnUse") == 0;
+    FlCssBox box = {0, 0, t->units.width, t->units.height};
+    if (fl_is_set(node, "clip-path") || (!in_page && !fl_css_fill_box(node, &t->units, &box)))
+        return;
+    g_autofree char *id = g_strdup_printf("fl-turned-%d", t->n_made++);
+    xmlNode *clip = xmlNewDocNode(node->doc, node->ns, (const xmlChar *)"clipPath", NULL);
+    xmlNode *region = xmlNewChild(clip, node->ns, (const xmlChar *)"rect", NULL);
+    for (int i = 0; i < 4; i++) {
+        const char *text = fl_attribute(filter, names[i]);
+        const double side = i % 2 ? box.height : box.width, corner = i == 0 ? box.x : box.y;
+        double v = 0;
+        fl_css_number(text ? text : i < 2 ? "-10%" : "120%", &t->units, in_page ? side : 1, &v);
+        v = in_page ? v : v * side + (i < 2 ? corner : 0);
+        fl_set_numbers(region, names[i], &v, 1);
+    }
+    fl_set_attribute(clip, "id", id);
+    xmlAddNextSibling(filter, clip);
+    fl_declare(node, "clip-path:url(#%s)", id);
 }
 
 /** librsvg turns the deviations of a blur across and down like a way: at 45 degrees it blurs in one
  * direction only. What is turned gets a filter of its own, whose blurs come out round. */
-static void mend_blur(Turned *t, xmlNode *node, const FlAffine *map)
+static void mend_filter(Turned *t, xmlNode *node, const FlAffine *map)
 {
     g_autofree char *value = fl_property(node, "filter");
     xmlNode *filter = fl_referred_by(value, "filter", t->ids);
@@ -72,6 +90,8 @@ static void mend_blur(Turned *t, xmlNode *node, const FlAffine *map)
         blurs |= fl_is_one_of(step, "feGaussianBlur feDropShadow");
         t->warped |= in_box || is_upright(step);
     }
+    if (filter)
+        cut_region(t, node, filter);
     if (!filter || !blurs || in_box)
         return;
     g_autofree char *id = g_strdup_printf("fl-turned-%d", t->n_made++);
@@ -145,31 +165,43 @@ static void place_gradient(const Turned *t, xmlNode *own, const xmlNode *server,
         set_share(t, own, server, shares[i][0], shares[i][1], 0, 1);
 }
 
-/** Places the tiles of a pattern, and scales their content. */
+/** Places the tiles of a pattern, and maps their content into them. */
 static void place_pattern(const Turned *t, xmlNode *own, const xmlNode *server, FlCssBox box)
 {
+    static const char *const names[] = {"x", "y", "width", "height"};
+    const double corner[] = {box.x, box.y, 0, 0}, side[] = {box.width, box.height};
     const xmlNode *content = server_with(t, server, NULL);
-    if (is_in_box(t, server, "patternUnits", true)) {
-        fl_set_attribute(own, "patternUnits", "userSpaceOnUse");
-        set_share(t, own, server, "x", "0", box.x, box.width);
-        set_share(t, own, server, "y", "0", box.y, box.height);
-        set_share(t, own, server, "width", "0", 0, box.width);
-        set_share(t, own, server, "height", "0", 0, box.height);
-    }
-    if (!content || server_with(t, server, "viewBox") ||
-        !is_in_box(t, server, "patternContentUnits", false))
+    const xmlNode *viewed = server_with(t, server, "viewBox");
+    const bool in_box = is_in_box(t, server, "patternUnits", true);
+    FlAffine map = {box.width, 0, 0, box.height, 0, 0};
+    double view[4];
+    for (int i = 0; i < 4; i++)
+        if (in_box)
+            set_share(t, own, server, names[i], "0", corner[i], side[i % 2]);
+        else
+            fl_set_attribute(own, names[i], server_attribute(t, server, names[i]));
+    fl_set_attribute(own, "patternUnits", "userSpaceOnUse");
+    if (viewed && fl_view_box(viewed, view))
+        map = fl_fit_box(view, fl_length_of(own, "width", &t->units, t->units.width),
+                         fl_length_of(own, "height", &t->units, t->units.height),
+                         server_attribute(t, server, "preserveAspectRatio"));
+    else if (!is_in_box(t, server, "patternContentUnits", false))
         return;
-    const FlAffine scale = {box.width, 0, 0, box.height, 0, 0};
-    g_autofree char *text = fl_affine_text(&scale);
+    if (!content)
+        return;
+    g_autofree char *text = fl_affine_text(&map);
     xmlNode *group = xmlNewChild(own, own->ns, (const xmlChar *)"g", NULL);
     xmlAddChildList(group, xmlDocCopyNodeList(own->doc, content->children));
     fl_set_attribute(group, "transform", text);
+    fl_set_attribute(own, "patternTransform", server_attribute(t, server, "patternTransform"));
     fl_set_attribute(own, "patternContentUnits", "userSpaceOnUse");
+    fl_set_attribute(own, "viewBox", NULL);
+    fl_drop_href(own);
 }
 
-/** librsvg takes the box of a turned shape for that of its picture: the shape gets a paint of its
- * own in user units. */
-static void mend_paint(Turned *t, xmlNode *node, const char *property)
+/** librsvg takes the box of a turned shape for that of its picture, and draws no pattern whose
+ * viewBox has other proportions than its tile: the shape gets a paint of its own in user units. */
+static void mend_paint(Turned *t, xmlNode *node, const char *property, bool turned)
 {
     g_autofree char *value = fl_inherited_property(node, property);
     xmlNode *server = fl_referred_by(value, "linearGradient radialGradient pattern", t->ids);
@@ -177,7 +209,8 @@ static void mend_paint(Turned *t, xmlNode *node, const char *property)
     const bool in_box = server && (pattern ? is_in_box(t, server, "patternUnits", true) ||
                                                  is_in_box(t, server, "patternContentUnits", false)
                                            : is_in_box(t, server, "gradientUnits", true));
-    const char *id = in_box ? fl_attribute(server, "id") : NULL;
+    const bool viewed = pattern && server_with(t, server, "viewBox");
+    const char *id = viewed || (in_box && turned) ? fl_attribute(server, "id") : NULL;
     FlCssBox box;
     if (!id || !fl_css_fill_box(node, &t->units, &box) || !(box.width > 0 && box.height > 0))
         return;
@@ -198,12 +231,13 @@ static void visit(Turned *t, xmlNode *node, const FlAffine *around)
 {
     const FlAffine own = fl_affine_of(node), map = fl_affine_multiply(around, &own);
     const bool upright = (map.xy == 0 && map.yx == 0) || (map.xx == 0 && map.yy == 0);
-    if (!upright && map.xx * map.yy != map.xy * map.yx && t->n_copied < MOST_COPIED) {
-        mend_blur(t, node, &map);
-        if (fl_is_one_of(node, "path rect circle ellipse line polyline polygon")) {
-            mend_paint(t, node, "fill");
-            mend_paint(t, node, "stroke");
-        }
+    const bool turned = !upright && map.xx * map.yy != map.xy * map.yx;
+    if (turned && t->n_copied < MOST_COPIED)
+        mend_filter(t, node, &map);
+    if (t->n_copied < MOST_COPIED &&
+        fl_is_one_of(node, "path rect circle ellipse line polyline polygon")) {
+        mend_paint(t, node, "fill", turned);
+        mend_paint(t, node, "stroke", turned);
     }
     FL_EACH_ELEMENT (child, node)
         visit(t, child, &map);
