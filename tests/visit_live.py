@@ -145,6 +145,10 @@ browser.ask('toggleAll(true), play(false), byId("mode").value = "alone", zoom()'
 browser.ask('byId("view").focus(), document.activeElement.blur(), show(0)')
 browser.key("ArrowRight")
 tell("a key steps", browser.ask("shown[state.at].number") == 3)
+browser.ask("show(0), play(true), byId('play').focus()")
+browser.key("ArrowLeft")
+tell("from the first frame of a loop to the last, and then it no longer plays", browser.ask("state.at === 3 && !state.playing"))
+browser.ask("document.activeElement.blur(), show(1)")
 browser.ask('byId("regions").rows[0].focus()')
 for key in "ArrowDown", "Enter", " ":
     browser.key(key)
