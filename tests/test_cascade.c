@@ -468,6 +468,7 @@ static void gaps_of_librsvg_are_filled(void)
                  "SourceAlpha");
     g_autoptr(FlSvg) svg =
         open_svg_of("<filter><feFlood/><feDropShadow dx='1' result='r'/></filter>"
+                    "<filter><feImage href='#s' x='7' y='5'/></filter>"
                     "<linearGradient x2='0'><stop id='s' offset='.123'/><stop/></linearGradient>"
                     "<filter id='t'><feGaussianBlur stdDeviation='3'/></filter>"
                     "<g transform='rotate(45)'><path filter='url(#t)' transform='scale(2)'/></g>"
@@ -485,6 +486,9 @@ static void gaps_of_librsvg_are_filled(void)
     g_autofree char *text = fl_document_text(fl_svg_document(svg), &bytes);
     g_assert_nonnull(strstr(text, "<feMerge dx=\"1\" result=\"r\""));
     g_assert_nonnull(strstr(text, "<feMergeNode in=\"fl-before-0\"/>"));
+    g_assert_nonnull(strstr(text, "<feImage href=\"#fl-image-1\""));
+    g_assert_nonnull(strstr(text, "<g id=\"fl-image-1\"><use href=\"#s\" "
+                                  "transform=\"matrix(1, 0, 0, 1, 7, 5)\"/></g>"));
     g_assert_nonnull(strstr(text, "stdDeviation=\"0 4.24264069\""));
     g_assert_nonnull(strstr(text, "href=\"#o\" gradientUnits=\"userSpaceOnUse\" "
                                   "gradientTransform=\"matrix(8, 0, 0, 2, 3, 0)\" x1=\"0\""));

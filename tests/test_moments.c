@@ -93,6 +93,12 @@ static void smil_has_its_values(void)
     assert_at(RECT("<animate attributeName='x' to='11' dur='1s' fill='freeze'/>"), .5, "x", "6");
     assert_at(RECT("<animate attributeName='x' to='11' dur='1s' fill='freeze'/>"), 9, "x", "11");
     assert_at(RECT("<animate attributeName='x' by='4' dur='1s'/>"), .5, "x", "3");
+    assert_at("<g color='#ff0000'>" RECT(
+                  "<animate attributeName='fill' values='#000000;currentColor' dur='1s'/>") "</g>",
+              .5, "fill", "rgb(128, 0, 0)");
+    assert_at("<g fill='#0000ff'>" RECT(
+                  "<animate attributeName='fill' values='inherit;#000000' dur='1s'/>") "</g>",
+              .5, "fill", "rgb(0, 0, 128)");
     assert_at(RECT("<animate attributeName='x' values='0;10;0' dur='2s' repeatCount='2'/>"), 2.5,
               "x", "5");
     assert_at(RECT("<animate attributeName='x' values='0;10;0' keyTimes='0;.2;1' dur='1s'/>"), .1,
