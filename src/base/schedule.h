@@ -13,8 +13,7 @@ int fl_schedule_threads(void);
 /** The same, but no more than `most`: for threads that take much memory each. */
 int fl_schedule_threads_up_to(int most);
 
-/** The same, but no more than find work in an area of so many pixels that is searched: the others
- * would wait. */
+/** The same, but no more than a search over so many pixels has work for. */
 int fl_schedule_threads_for(size_t pixels);
 
 /** Sets that number for the calling thread. Returns: the number before. */

@@ -332,7 +332,8 @@ void fl_layer_begin(FlLayer *layer, const FlLayerSources *sources, int r)
                   .blend_mode = draw->blend_mode};
 }
 
-/* The first style of a region that is seen in the frame; below 0 as in painted_of. */
+/* Of the painted regions of a region, one for each of its styles, the first that has a share in the
+ * frame; below 0 if the region is not painted. */
 static int first_style(const FlComposeInput *input, int region)
 {
     int p = input->painted_of[region];

@@ -33,7 +33,8 @@ typedef struct FlPaperSheet {
                  // given
 } FlPaperSheet;
 
-/** The word for a paper that is made and tinted, and so is the ground of a film: its colour. */
+/** The colour of a tinted paper, by its word: the ground of a film that is painted on it. Returns:
+ * NULL if `paper` is another word, a file or NULL. */
 const uint8_t *fl_paper_ground(const char *paper);
 
 /** Returns: true if this paper can be asked for; NULL: "auto". Does not open its file.

@@ -78,10 +78,10 @@ void fl_field_find_pools(const FlWashField *field, float *pool);
 /** A share at each point by which it lies in the middle of something large. */
 void fl_field_find_heart(const FlWashField *field, float *heart);
 
-/** A share at each point by which it lies behind the rim. */
+/** At each point 0 on the rim, rising to 1 behind it. */
 void fl_field_find_middle(const FlWashField *field, float *middle);
 
-/** A share at each point by which it lies in something large: lines and dots have no wash. */
+/** At each point 0 in lines and dots, which have no wash, rising to 1 in large parts. */
 void fl_field_find_breadth(const FlWashField *field, float *breadth);
 
 /** Fills the planes of the wash with noise at the places where its parts were first seen. */

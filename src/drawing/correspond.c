@@ -9,7 +9,7 @@
 #define FIT_PX 0.05     // by how much an affine map may miss
 #define FIT_SHARE 0.02  // and which share of the motion
 #define OTHER_START 4.0 // px², mean energy of a node from which on other starts are tried
-#define BETTER 0.25     // share of the energy that another start must get down to
+#define BETTER 0.25     // another start is taken if its energy is at most this share
 #define MOST_NODES 4096 // of a subpath whose starts are tried
 #define SAMPLES 4       // of a cubic; growing lines have twice as many
 #define LIES_ON_PX 0.15 // a line that has grown lies this near to what it has become

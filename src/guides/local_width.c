@@ -18,7 +18,8 @@
 #define SLOPE_BROAD 0.64f
 #define AHEAD_PX 4.0f
 
-/** A disc: its column, and its radius and what it raises pixels to, in sixteenths. */
+/** A disc: its column, its radius, and the half width that it gives its pixels, both in sixteenths
+ * of a px. */
 typedef struct Disc {
     int32_t x;
     uint16_t radius, value;

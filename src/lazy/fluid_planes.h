@@ -49,7 +49,7 @@ void fl_fluid_picture_pack(const FlFluidPlanes *planes, const FlFluidWeights *we
 void fl_fluid_picture_pack_row(const float *rgba, int y, const FlFluidPicture *picture);
 
 #define FL_FLUID_LOWER 0.1f // l: blurred alpha from which on there is fluid [L15 §5]
-#define FL_FLUID_UPPER 0.9f // u: from which on it is interior
+#define FL_FLUID_UPPER 0.9f // u: blurred alpha from which on it is interior
 
 /** Parts of the fluid, matched for themselves [L15 §4.2]. */
 typedef struct FlFluidSegments {

@@ -191,7 +191,7 @@ static FlRenderOptions options_of_frames(const FlFilm *film)
     return options;
 }
 
-/* Settings for every region override those of the config; of drafts no region has its own. */
+/* Collects the options and settings of the next frame. Drafts have one detail for all regions. */
 static void ask(FlFilm *film, Take *take)
 {
     static const FlSetting detail = {NULL, "detail", "draft"};

@@ -355,7 +355,8 @@ static void clear(Pipeline *pipeline)
     fl_frames_clear(&pipeline->frames);
 }
 
-/* *stale: it failed since paint that was known is gone or damaged, and may be tried again. */
+/* Renders once. *stale: it failed since paint in the cache is gone or damaged, and may be tried
+ * again. */
 static bool try_render(const FlRenderOptions *options, FlFrameTaker taker, bool *stale,
                        GError **error)
 {

@@ -52,8 +52,8 @@ static bool is_strained(const float *strain, size_t n)
     return false;
 }
 
-/* The share by which the whole region leaves the old layer because the fresh one is strained as
- * well: only a layer that is seen nowhere can be laid anew. */
+/* The least strain, 0..1, by which all of a region fades to the fresh layer when that is strained
+ * as well: the next one is laid only after the old one has gone everywhere. */
 static float haste_of(const FlMaterial *fresh, const FlGuides *guides, const float *strain)
 {
     double sum = 0, n = 0;

@@ -142,7 +142,7 @@ static void find_width(const FlWetShape *shape, const float *distance, FlEdgePoi
     point->half_width = depth;
 }
 
-/** Half the way over a shape from a point that it leaves, along its motion. */
+/** Half the length of a shape along its motion, from a point of its trailing edge. */
 static float half_way_over(const FlWetShape *shape, const FlEdgePoint *point)
 {
     const float most = 52 * shape->px, slow = 0.5f * shape->px;
