@@ -17,6 +17,7 @@ enum {
     KEY_FRONTS,
     KEY_LOBES,
     KEY_BLOOM,
+    KEY_LOST = 501,
 };
 
 #define APART_PX 30      // parts that have moved apart by as much have nothing in common
@@ -61,7 +62,7 @@ typedef float Values[FL_WASH_PLANES][FL_NOISE_ROW];
 static void find_passes(const FlWash *wash, const Places *at, Values values)
 {
     static const float wide[2] = {170, 170};
-    static const float cell[2] = {90, 60};
+    static const float cell[2] = {160, 110};
     float waver[FL_NOISE_ROW];
     noise_at(fl_key(wash->key, KEY_PASS), at, wide, 0, 3, .5f, waver);
     noise_at(fl_key(wash->key, KEY_DRY), at, cell, 0, 1, 1, values[FL_WASH_DRY]);
@@ -222,10 +223,11 @@ static void add_drops(const FlWashField *field, const Places *at, Values values)
 
 static void find_values(const FlWashField *field, const Places *at, Values values)
 {
-    static const float tone[2] = {260, 220}, hue[2] = {170, 130};
+    static const float tone[2] = {260, 220}, hue[2] = {170, 130}, lost[2] = {90, 60};
     const FlWash *wash = field->wash;
     noise_at(fl_key(wash->key, KEY_TONE), at, tone, .35f, 2, .5f, values[FL_WASH_TONE]);
     noise_at(fl_key(wash->key, KEY_HUE), at, hue, .5f, 3, .55f, values[FL_WASH_HUE]);
+    noise_at(fl_key(wash->key, KEY_LOST), at, lost, 0, 1, 1, values[FL_WASH_CALM]);
     find_passes(wash, at, values);
     find_fronts(wash, at, values);
     add_drops(field, at, values);

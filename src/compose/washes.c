@@ -75,6 +75,7 @@ static void put_together(const FlWashField *field)
 {
     const FlWash *wash = field->wash;
     float *breadth = field->room[3], *pool = field->room[2], *heart = field->room[4];
+    float *middle = field->room[1];
     float *tones = field->room[2], *hues = field->room[1], *share_of_hue = field->room[4];
     float *tone = wash->plane[FL_WASH_TONE], *hue = wash->plane[FL_WASH_HUE];
     const size_t n = fl_wash_points(wash);
@@ -86,7 +87,7 @@ static void put_together(const FlWashField *field)
     fl_field_find_pools(field, pool);
     fl_field_find_heart(field, heart);
     fl_field_find_breadth(field, breadth);
-    fl_field_find_middle(field, wash->plane[FL_WASH_CALM]);
+    fl_field_find_middle(field, middle);
     for (size_t i = 0; i < n; i++) {
         const float slow = tone[i];
         tone[i] = .24f * fl_clamp(lit * field->side[i] + .45f * slow, -1.3f, 1.3f) + uneven * slow +
@@ -104,13 +105,13 @@ static void put_together(const FlWashField *field)
         hue[i] *= share_of_hue[i];
         wash->plane[FL_WASH_LINES][i] = lines;
         wash->plane[FL_WASH_FRONTS][i] *= large * lines;
-        const float middle = wash->plane[FL_WASH_CALM][i]; // the rim is found here and lost there
-        const float lost = .9f * fl_smooth(.65f + 1.2f * wash->plane[FL_WASH_DRY][i]);
-        const float more = fl_clamp(3.2f * wash->plane[FL_WASH_DRY][i], -1, 1);
+        const float noise = wash->plane[FL_WASH_CALM][i]; // the rim is found here, lost there
+        const float lost = .9f * fl_smooth(.65f + 1.2f * noise);
+        const float more = fl_clamp(3.2f * noise, -1, 1);
         const float calm = share_at(field, FL_MAP_CALM, i) * wash->style.calm *
                            (1 + more * (1 - wash->style.calm)); // marks stay here and there
         wash->plane[FL_WASH_CALM][i] =
-            MIN(washed * wash->style.wash, 1) * (calm * middle + lost * (1 - middle));
+            MIN(washed * wash->style.wash, 1) * (calm * middle[i] + lost * (1 - middle[i]));
     }
     find_rough(field);
     fl_wash_find_tones(wash, tones, hues);
