@@ -101,7 +101,7 @@ for more in 'steps = 100000' 'warm-up = 1000000'; do
 done
 does 'a recipe is simulated' simulate "$dust/recipe.ini" -o dust
 { diff -r dust/frames "$dust/frames" >out && diff -r dust/masks "$dust/masks" >>out &&
-    [ "$(tail -1 err)" = 'fluidy-style: frame 3 of 3' ]; }
+    [ "$(tail -1 err)" = 'fluidy-style: frame 3 of 3; writing the files' ]; }
 result $? 'frame by frame'
 sed 's/^frames = 3/frames = 2/' "$dust/recipe.ini" >short.ini
 refuses 'a simulated style is not overwritten' 1 'dust/frames: already exists; use -y to replace it' \

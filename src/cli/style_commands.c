@@ -186,7 +186,8 @@ static bool run_check(char **words, GError **error)
 static bool show_progress(int frame, int n_frames, void *data)
 {
     if (!options.quiet)
-        fprintf(stderr, "fluidy-style: frame %d of %d\n", frame, n_frames);
+        fprintf(stderr, "fluidy-style: frame %d of %d%s\n", frame, n_frames,
+                frame < n_frames ? "" : "; writing the files");
     return true;
 }
 

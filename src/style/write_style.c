@@ -38,13 +38,16 @@ static bool write_planes(const char *folder, const uint8_t *data, const FlStyle 
     if (g_mkdir(folder, 0755) != 0)
         return failed(error, folder, "cannot be made");
     const size_t bytes = (size_t)style->width * style->height * channels;
+    GError *first = NULL;
+#pragma omp parallel for schedule(dynamic, 1)
     for (int i = 0; i < style->n_frames; i++) {
+        GError *failure = NULL;
         g_autofree char *name = g_strdup_printf("%04d.png", i + 1);
         g_autofree char *path = g_build_filename(folder, name, NULL);
-        if (!fl_png_write(path, data + i * bytes, style->width, style->height, channels, error))
-            return false;
+        if (!fl_png_write(path, data + i * bytes, style->width, style->height, channels, &failure))
+            fl_parallel_error_keep(&first, failure);
     }
-    return true;
+    return fl_parallel_error_propagate(error, first);
 }
 
 static bool write_parts(const FlStyle *style, const char *folder, GError **error)
