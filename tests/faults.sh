@@ -50,6 +50,9 @@ mkdir limited
 (ulimit -f 2 && paint limited)
 [ $? = 1 ] && says 'File too large' && no_litter limited
 result $? 'a limit on the size of files is one message'
+(ulimit -n 40 && paint few -j 20)
+[ $? = 1 ] && says 'too few files may be open at once: 96 are needed for 20 threads' && [ ! -e few ]
+result $? 'so is a limit on open files'
 
 # cramped ARGUMENT...: paints in a control group with 80 MiB of memory.
 group=/sys/fs/cgroup/memory/fluidy-$$

@@ -186,7 +186,7 @@ options_are_in_the_table() {
 # Each program has its own words for an option; the library names it, ‘canvas’.
 messages_name_no_flags() {
     grep -rnE '"[^"]*(--[a-z]| -[a-zA-Z]\b)[^"]*"' --include='*.[ch]' src include |
-        grep -vE '^src/cli/|^src/io/(video|ffmpeg)[a-z_]*.c|^src/inspect/farm_plan.c|ulimit -v'
+        grep -vE '^src/cli/|^src/io/(video|ffmpeg)[a-z_]*.c|^src/inspect/farm_plan.c|ulimit -[nv]'
 }
 
 limits_are_documented() {

@@ -128,9 +128,26 @@ bool fl_headroom_left(void)
     return !is_limited() || can_map(SMALL_BYTES);
 }
 
+#define FILES 16       // open at once, besides those of threads
+#define THREAD_FILES 4 // of a thread's worker
+
+static bool check_files(GError **error)
+{
+    struct rlimit limit;
+    const int threads = fl_schedule_threads(), needed = FILES + THREAD_FILES * threads;
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= (rlim_t)needed)
+        return true;
+    return fl_fail(error, FL_ERROR_NO_MEMORY,
+                   "too few files may be open at once: %d are needed for %d thread%s; use fewer "
+                   "threads or raise the limit (ulimit -n)",
+                   needed, threads, threads == 1 ? "" : "s");
+}
+
 bool fl_headroom_check(GError **error)
 {
     const size_t bytes = LIBRARY_BYTES + stack_bytes();
+    if (!check_files(error))
+        return false;
     if (can_map(bytes))
         return true;
     return fl_fail(

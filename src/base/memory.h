@@ -30,8 +30,9 @@ void fl_memory_separate_heaps(void);
 
 /**
  * Checks that there is memory for the small allocations of GLib, librsvg and OpenMP, and for the
- * stacks of all threads. Frames and fields, which are far larger, do not count: fl_alloc() reports
- * their failure. Call it when the number of threads is known, before files are read.
+ * stacks of all threads, and that enough files may be open. Frames and fields, which are far
+ * larger, do not count: fl_alloc() reports their failure. Call it when the number of threads is
+ * known, before files are read.
  *
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */
