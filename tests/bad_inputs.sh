@@ -43,6 +43,7 @@ echo 'not a drawing' >text/a_1.svg
 echo '<html><body/></html>' >html/a_1.svg
 head -c 90 good/a_1.svg >cut/a_1.svg
 touch void.svg
+head -c 100 /dev/zero >zeros.svg
 printf "<svg xmlns='http://www.w3.org/2000/svg'>%s" "$(printf '<g>%.0s' {1..300})" >deep.svg
 printf '\x1f\x8b\x08garbage' >packed.svg
 printf '\xff\xfe\x00<' >binary.svg
@@ -97,6 +98,8 @@ conf regon '[regon a]\nstyle = 01'
 conf range '[defaults]\nw-temp = 1e9'
 conf words '[defaults]\n\njust words'
 conf tint '[defaults]\ntint = blue-ish'
+conf width '[defaults]\nwidth = 300'
+conf place '[project]\ntint = keep'
 conf version '[project]\nversion = 2'
 conf double '[region a]\nmatch-id = x\n[region a]\nmatch-id = y'
 printf '[defaults]\nstyle = \xff\xfe\n' >latin.conf
@@ -137,6 +140,7 @@ table() {
 2|no limit “x”*the limits are: drawing, elements, *|good --limit x=1
 2|background “blue”: expected #rrggbb, none, *|good -b blue
 2|film.mp4: H.264 has no transparency; *|good -b clear.png -o film.mp4
+2|x_%d.png: --no-frames is for films; use a name such as walk.mov|good --no-frames -o x_%d.png
 2|film.mov: a film cannot be resumed without its frames; *|good --resume --no-frames -o film.mov
 2|x.bmp: *|good -o x.bmp
 2|x_%s.png: “%s.p” is no frame number; expected %d, %04d or ####*|good -o x_%s.png
@@ -213,6 +217,7 @@ table() {
 1|cut/a_1.svg: not well-formed: line 1: *|cut
 1|void.svg: not well-formed: line 1: Document is empty|void.svg
 1|deep.svg: not well-formed: line 1: elements are nested deeper than 256 levels; use --limit depth=N to allow more|deep.svg
+1|zeros.svg: not well-formed: it begins with zero bytes, *|zeros.svg
 1|packed.svg: damaged gzip data|packed.svg
 1|binary.svg: not well-formed: *|binary.svg
 1|nothing/a_1.svg: there is nothing to paint in the drawing (1 warning under --strict)|nothing --strict
@@ -245,6 +250,8 @@ table() {
 2|hold.conf:2: hold: “0” is not an integer from 1 to 1000|good -c hold.conf
 2|mistyped.conf:2: [region] has no key “match-fil”; did you mean “match-fill”?|good -c mistyped.conf
 2|colour.conf:2: match-fill: “#12345” is not a colour #RRGGBB|good -c colour.conf
+2|width.conf:2: [defaults] has no key “width”; it is for the command line alone|good -c width.conf
+2|place.conf:2: [project] has no key “tint”; it belongs to [defaults] or [region NAME]|good -c place.conf
 2|open.conf:1: “[defaults” is not a section: “]” must end it|good -c open.conf
 2|first.conf:1: “style” is above the first section; *|good -c first.conf
 2|regon.conf:1: unknown section [regon a]; sections are *|good -c regon.conf

@@ -54,6 +54,11 @@ static char *frames_of_movie(const FlPlan *plan)
 
 static bool choose_frames(FlPlan *plan, GError **error)
 {
+    const bool parts = plan->out.paint || plan->out.layers;
+    if (plan->options.no_frames && !plan->out.format->film && !parts)
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "%s: ‘no-frames’ is for films; use a name such as walk.mov",
+                       plan->out.output);
     if (!plan->out.format->moving || plan->options.no_frames)
         return true;
     plan->out.movie = g_steal_pointer(&plan->out.output), plan->out.movie_format = plan->out.format;

@@ -113,6 +113,32 @@ static bool read_section(void *data, const char *name, int line, GError **error)
                    *hint ? "" : "; sections are [project], [defaults] and [region NAME]", hint);
 }
 
+/* ---- keys -------------------------------------------------------------------------------- */
+
+static bool is_project_key(const char *key)
+{
+    const FlOption *option = fl_option_find(FL_SCOPE_RENDER, key);
+    return strcmp(key, "include") == 0 || strcmp(key, "version") == 0 ||
+           (option && option->section == FL_SECTION_PROJECT);
+}
+
+static bool is_region_key(const char *key)
+{
+    return g_strv_contains(fl_region_settings_keys(), key);
+}
+
+/* The section of an unknown key, or the nearest of the known ones; to be freed. */
+static char *hint_of(const char *key, const GPtrArray *known)
+{
+    if (is_project_key(key))
+        return g_strdup("; it belongs to [project]");
+    if (is_region_key(key))
+        return g_strdup("; it belongs to [defaults] or [region NAME]");
+    if (fl_option_find(FL_SCOPE_RENDER, key))
+        return g_strdup("; it is for the command line alone");
+    return fl_did_you_mean(key, (const char *const *)known->pdata);
+}
+
 /* ---- [project] --------------------------------------------------------------------------- */
 
 static bool set_version(Reader *reader, const char *value, GError **error)
@@ -148,7 +174,7 @@ static bool set_project(Reader *reader, const char *key, const char *value, GErr
         if (fl_option_at(i)->section == FL_SECTION_PROJECT)
             g_ptr_array_add(known, (gpointer)fl_option_at(i)->name);
     g_ptr_array_add(known, NULL);
-    g_autofree char *hint = fl_did_you_mean(key, (const char *const *)known->pdata);
+    g_autofree char *hint = hint_of(key, known);
     return fl_fail(error, FL_ERROR_USAGE, "[project] has no key “%s”%s", key, hint);
 }
 
@@ -189,19 +215,9 @@ static bool set_tolerance(FlRule *rule, const char *value, bool overridden, GErr
     return true;
 }
 
-static bool is_project_key(const char *key)
-{
-    const FlOption *option = fl_option_find(FL_SCOPE_RENDER, key);
-    return strcmp(key, "include") == 0 || strcmp(key, "version") == 0 ||
-           (option && option->section == FL_SECTION_PROJECT);
-}
-
-/* The nearest key of a region section, the match-* among them, or the section of a project's. */
+/* matches: the keys of matches are known, too. */
 static bool unknown_key(const char *section, const char *key, bool matches, GError **error)
 {
-    if (is_project_key(key))
-        return fl_fail(error, FL_ERROR_USAGE, "[%s] has no key “%s”; it belongs to [project]",
-                       section, key);
     g_autoptr(GPtrArray) known = g_ptr_array_new();
     for (const char *const *k = fl_region_settings_keys(); *k; k++)
         g_ptr_array_add(known, (gpointer)*k);
@@ -211,13 +227,8 @@ static bool unknown_key(const char *section, const char *key, bool matches, GErr
     for (size_t i = 0; matches && i < G_N_ELEMENTS(other_matches); i++)
         g_ptr_array_add(known, (gpointer)other_matches[i]);
     g_ptr_array_add(known, NULL);
-    g_autofree char *hint = fl_did_you_mean(key, (const char *const *)known->pdata);
+    g_autofree char *hint = hint_of(key, known);
     return fl_fail(error, FL_ERROR_USAGE, "[%s] has no key “%s”%s", section, key, hint);
-}
-
-static bool is_region_key(const char *key)
-{
-    return g_strv_contains(fl_region_settings_keys(), key);
 }
 
 /* Keeps the value of a file that overrides this one. */

@@ -283,7 +283,9 @@ static xmlDoc *parse(const char *data, gsize bytes, const char *path, char **pro
     xmlDoc *doc = xmlCtxtReadMemory(context, data, (int)bytes, path, NULL, options);
     const xmlError *e = xmlCtxtGetLastError(context);
     g_autofree char *words = e && e->message ? plain_xml_words(g_strchomp(e->message)) : NULL;
-    if (!doc && problem)
+    if (!doc && problem && bytes > 0 && data[0] == 0)
+        *problem = g_strdup("it begins with zero bytes, as after a copy or a save that broke off");
+    else if (!doc && problem)
         *problem = words ? g_strdup_printf("line %d: %s", e->line, words) : g_strdup("no XML");
     xmlFreeParserCtxt(context);
     return doc;
