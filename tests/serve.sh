@@ -122,7 +122,7 @@ chmod +x bin/fluidy-frames
 PATH=$folder/bin:$PATH
 most=$(ulimit -Sn)
 ulimit -Sn 60
-serves -s "$style" --serve
+serves -s "$style" --serve -j 2
 ulimit -Sn "$most"
 visit ask_live.py "$address" flood
 ends TERM
