@@ -224,12 +224,12 @@ static void thin_paint_hides_what_is_below_amid_its_shape_not_in_its_rim(void)
     knock_out(FL_MEDIUM_TRANSPARENT, knockout);
     g_assert_cmpint(row[0], ==, 255);
     g_assert_cmpint(row[1], ==, 0);            // a hole shows it
-    g_assert_cmpint(row[SQUARE - 1], ==, 169); // two thirds, rounded down
+    g_assert_cmpint(row[SQUARE - 1], ==, 127); // half, rounded down
     for (int x = 3; x < SQUARE; x++)
         g_assert_true(row[x] <= row[x - 1] && row[x] >= row[x - 1] - 48); // bit by bit
     knock_out(FL_MEDIUM_BODY, knockout);
     g_assert_cmpint(row[1], ==, 255); // cut out of its paper
-    g_assert_cmpint(row[SQUARE - 1], ==, 169);
+    g_assert_cmpint(row[SQUARE - 1], ==, 127);
     knock_out(FL_MEDIUM_OPAQUE, knockout);
     g_assert_cmpint(row[0], ==, row[SQUARE - 1]);
     g_assert_cmpint(row[0], <, 128);

@@ -17,8 +17,8 @@ typedef struct Ramps {
 } Ramps;
 
 /*
- * Rims of a fifth already hid all, and where the shape lay over something dark they were a light
- * line around it: thin paint on white paper. Amid a shape thin washes lie on paper, around which
+ * Rims of a fifth hide nothing: where the shape lies over other paint they would be an even light
+ * line around it, thin paint on white paper. Amid a shape thin washes lie on paper, around which
  * the paint below went: else they would be mottled with it. A hole in them shows what lies below.
  * Thin places of an opaque medium let it through everywhere, the more the darker they are: paper
  * shows least in light paint. What is painted as if cut out of its paper has that below it.
@@ -26,7 +26,7 @@ typedef struct Ramps {
 static Ramps ramps_of(FlMedium medium, int darkness)
 {
     const int none = PART(6) * darkness / 255;
-    const Ramp rim = {0, PART(6)}, opaque = {none, none + PART(3)};
+    const Ramp rim = {PART(2), PART(6)}, opaque = {none, none + PART(3)};
     if (medium == FL_MEDIUM_OPAQUE)
         return (Ramps){opaque, opaque};
     return (Ramps){rim, medium == FL_MEDIUM_BODY ? (Ramp){-1, 0} : (Ramp){0, PART(3)}};
