@@ -214,7 +214,8 @@ static void many_shapes_are_followed_where_one_comes_in(void)
         assert_moves(drawing, t, .4, .3);
 }
 
-/* A long shape has the axis that it has when it is first seen; a round one has none. */
+/* A long shape has the axis that it has when it is first seen; a round one has none; leaves side by
+ * side have that of a leaf. */
 static void a_long_shape_has_an_axis(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -222,7 +223,9 @@ static void a_long_shape_has_an_axis(void)
         g_autofree char *shapes =
             g_strdup_printf("<path fill=\"red\" d=\"M-30,-8L30,-8L30,8L-30,8z\" "
                             "transform=\"translate(50 50) rotate(%d)\"/>"
-                            "<path fill=\"blue\" d=\"M60,10h20v20h-20z\"/>",
+                            "<path fill=\"blue\" d=\"M60,10h20v20h-20z\"/>"
+                            "<g fill=\"green\"><path d=\"M5,2h9v3h-9z\"/><path d=\"M5,40h9v3h-9z\"/>"
+                            "<path d=\"M5,80h9v3h-9z\"/></g>",
                             30 + 5 * t);
         add_frame(folder, t, shapes);
     }
@@ -230,6 +233,7 @@ static void a_long_shape_has_an_axis(void)
     for (int t = 0; t < N; t++) {
         g_assert_cmpfloat_with_epsilon(fl_drawing_anchor(drawing, 0, t).axis, 30, .5);
         g_assert_true(isnan(fl_drawing_anchor(drawing, 1, t).axis));
+        g_assert_cmpfloat_with_epsilon(fl_drawing_anchor(drawing, 2, t).axis, 0, .5);
     }
 }
 

@@ -46,7 +46,7 @@ typedef struct Region {
     int first;        // index of its first leaf
     Fit fit;          // into the frame at hand
     Means means;      // as its first frame shows it
-    double spread[3]; // likewise, about the page's corner: as in FlPose, times the weight
+    double spread[3]; // of its shapes, each about its own middle: as in FlPose, times the weight
     bool begun;       // true after that frame
     bool limbs;       // true if some of its limbs move by themselves
 } Region;
@@ -297,21 +297,17 @@ static void add_beginning(Follower *f, const FlSurveyPart *part)
     if (region->begun)
         return;
     add_means(&region->means, weight, middle, middle);
-    region->spread[0] += weight * ((double)part->pose.spread[0] + middle.x * middle.x);
-    region->spread[1] += weight * ((double)part->pose.spread[1] + middle.y * middle.y);
-    region->spread[2] += weight * ((double)part->pose.spread[2] + middle.x * middle.y);
+    for (int k = 0; k < 3; k++)
+        region->spread[k] += weight * (double)part->pose.spread[k];
 }
 
 #define LONG 1.35 // times as long as it is wide: such a shape has an axis
 
-/* The direction in which a region is longest, degrees; NAN if it is hardly longer than wide. */
+/* The direction in which the shapes of a region are longest, as a mean and not as they lie side by
+ * side, degrees; NAN: hardly longer than wide. */
 static float axis_of(const Region *region)
 {
-    const FlPoint middle = mean_of(&region->means, region->means.to);
-    const double weight = region->means.weight;
-    const double xx = region->spread[0] / weight - middle.x * middle.x;
-    const double yy = region->spread[1] / weight - middle.y * middle.y;
-    const double xy = region->spread[2] / weight - middle.x * middle.y;
+    const double xx = region->spread[0], yy = region->spread[1], xy = region->spread[2];
     const double apart = sqrt((xx - yy) * (xx - yy) + 4 * xy * xy);
     const double most = (xx + yy + apart) / 2, least = (xx + yy - apart) / 2;
     return most > LONG * LONG * MAX(least, 1e-6) ? (float)(90 / G_PI * atan2(2 * xy, xx - yy))
