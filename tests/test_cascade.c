@@ -228,6 +228,10 @@ static void values_become_those_of_svg_1(void)
         {"style='font-size:1.5em'", "font-size", "24"},
         {"style='font-size:medium'", "font-size", "16"},
         {"style='font:bold 20px/1 serif;stroke-width:2em'", "stroke-width", "40"},
+        {"font-size='9' style='font:20px serif;stroke-width:2em'", "stroke-width", "40"},
+        {"style='font:20px serif;font-size:9px;stroke-width:2em'", "stroke-width", "18"},
+        {"style='font-size:0'", "font-size", "0"},
+        {"style='filter:drop-shadow(red)'", "filter", "drop-shadow(red)"},
         {"style='filter:drop-shadow(1px 2px red)'", "filter", "url(#fl-filter-0)"},
         {"style='filter:blur(1px) invert(1)'", "filter", "url(#fl-filter-0) url(#fl-filter-1)"},
         {"style='mask:url(#m) luminance'", "mask", "url(#m)"},
@@ -438,8 +442,15 @@ static void gaps_of_librsvg_are_filled(void)
     assert_value("<clipPath><rect id='a' width='50%'/></clipPath>", "width", "50");
     assert_value("<linearGradient id='a' style='transform:scale(2)'/>", "gradientTransform",
                  "matrix(2, 0, 0, 2, 0, 0)");
-    assert_value("<linearGradient id='a' href='#b'/><linearGradient id='b' href='#a'/>", "href",
-                 "");
+    assert_value("<mask><svg id='a' width='50%' viewBox='0 0 4 4'/></mask>", "width", "50");
+    assert_value("<mask><linearGradient id='a' x2='50%'/></mask>", "x2", "50%");
+    assert_value("<filter id='a' filterUnits='userSpaceOnUse' width='50%'/>", "width", "50");
+    assert_value("<linearGradient id='a' href='#b'><stop/></linearGradient>"
+                 "<linearGradient id='b' href='#a'/>",
+                 "href", "");
+    assert_value("<linearGradient id='b' href='#a'><stop/></linearGradient>"
+                 "<linearGradient id='a' href='#b'/>",
+                 "href", "#b");
     assert_value("<style xmlns='http://www.w3.org/1999/xhtml'>#a{fill:#123456}</style>"
                  "<path id='a'/>",
                  "fill", "#123456");
@@ -452,6 +463,9 @@ static void gaps_of_librsvg_are_filled(void)
     assert_value("<filter id='f'><feOffset/></filter>"
                  "<rect id='a' width='8' height='4' filter='url(#f)' transform='rotate(9)'/>",
                  "clip-path", "url(#fl-turned-0)");
+    assert_value("<filter id='f'><feOffset/></filter><g id='a' filter='url(#f)' "
+                 "transform='rotate(9)'><rect width='8' height='4'/><text>a</text></g>",
+                 "clip-path", "");
     assert_value("<path id='a' systemLanguage='xx'/>", "display", "none");
     assert_value("<switch><path id='a' systemLanguage='xx'/></switch>", "display", "");
     assert_value("<linearGradient id='g' gradientUnits='userSpaceOnUse'/>"
@@ -582,6 +596,7 @@ static void values_that_librsvg_leaves_out_are_told(void)
         {"<g id='a' style='color-scheme:dark'/>", "color-scheme: dark"},
         {"<g id='a' style='color-scheme:light dark;outline:0 none;backdrop-filter:blur(1px)'/>",
          NULL},
+        {"<g id='a' style='outline:2px solid lightblue'/>", "outline"},
         {"<g id='a' style='text-shadow:none;mask-mode:match-source'/>", NULL},
         {"<g id='a' style='mask:url(#m),url(#n)'/><mask id='m'/>", "mask: url(#m),url(#n)"},
         {"<g id='a' style='transform:perspective(9px)'/>", NULL},

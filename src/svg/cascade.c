@@ -369,7 +369,7 @@ static void set_font_size(Style *style, xmlNode *node, GArray *values, const cha
     const char *text = size ? size : "";
     Value *written = find_value(values, "font-size");
     double value = 0;
-    if (fl_css_number(text, &style->units, style->units.font_size, &value) && value > 0)
+    if (fl_css_number(text, &style->units, style->units.font_size, &value) && value >= 0)
         style->units.font_size = value;
     for (size_t i = 0; i < G_N_ELEMENTS(words); i++)
         if (strcmp(words[i].word, text) == 0)
@@ -494,17 +494,21 @@ static bool has_units(const xmlNode *node, const char *names, const char *word)
 }
 
 /** Percentages of what shapes share are of the viewport in which it is written; librsvg takes that
- * of the shape. */
+ * of the shape. They become numbers. */
 static void fix_percentages(xmlNode *node, Style *style)
 {
-    if (style->shared || has_units(node, "gradientUnits patternUnits maskUnits", "userSpaceOnUse"))
+    const FlCssUnits *units = fl_is(node, "svg") ? &style->around->units : &style->units;
+    const bool has_own = fl_is_one_of(node, "linearGradient radialGradient pattern mask filter");
+    if (has_own
+            ? has_units(node, "gradientUnits patternUnits maskUnits filterUnits", "userSpaceOnUse")
+            : style->shared)
         for (xmlAttr *a = node->properties, *next; a; a = next) {
             const char *name = (const char *)a->name, *text = fl_attribute(node, name);
             double value;
             next = a->next;
             if (text && g_str_has_suffix(text, "%") &&
                 fl_css_has_word("x y width height cx cy r rx ry x1 y1 x2 y2 fx fy fr", name) &&
-                fl_css_number(text, &style->units, whole_of(name, &style->units), &value))
+                fl_css_number(text, units, whole_of(name, units), &value))
                 fl_set_numbers(node, name, &value, 1);
         }
     style->shared |=
@@ -610,10 +614,10 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
         colour = own_value(c, node, values, "color", &style);
         style.colour = colour ? colour : style.colour;
     }
-    g_autofree char *font_size = own_value(c, node, values, "font-size", &style);
-    const Value *font = find_value(values, "font");
-    if (font && !font_size)
-        font_size = size_in_font(font->text, &style.units);
+    const Value *font = find_value(values, "font"), *size = find_value(values, "font-size");
+    g_autofree char *font_size = font && (!size || font > size) // the last of them counts
+                                     ? size_in_font(font->text, &style.units)
+                                     : own_value(c, node, values, "font-size", &style);
     if (font_size || fl_is_root(node))
         set_font_size(&style, node, values, font_size, owned);
     GString *text = g_string_new(NULL);

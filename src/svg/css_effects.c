@@ -314,7 +314,8 @@ static xmlNode *add_matrix(xmlNode *filter, const char *name, double v)
     return matrix;
 }
 
-/** Adds the step of drop-shadow(), whose colour is before or after its lengths. */
+/** Adds the step of drop-shadow(), whose colour is before or after its lengths; NULL: they are
+ * missing. */
 static xmlNode *add_shadow(xmlNode *filter, const char *arguments, const FlCssUnits *units,
                            const char *current)
 {
@@ -323,7 +324,8 @@ static xmlNode *add_shadow(xmlNode *filter, const char *arguments, const FlCssUn
     g_auto(GStrv) part = fl_css_split(arguments, ' ');
     const char *word = "currentColor";
     fl_set_attribute(shadow, "stdDeviation", "0");
-    for (int i = 0, n = 0; part[i]; i++) {
+    int n = 0;
+    for (int i = 0; part[i]; i++) {
         double v;
         if (n < 3 && fl_css_number(part[i], units, 0, &v))
             fl_set_numbers(shadow, names[n++], &v, 1);
@@ -333,7 +335,7 @@ static xmlNode *add_shadow(xmlNode *filter, const char *arguments, const FlCssUn
     g_autofree char *colour = fl_css_colour_with(word, current ? current : "black");
     fl_set_attribute(shadow, "flood-color",
                      g_ascii_strcasecmp(word, "currentColor") == 0 ? current : colour);
-    return shadow;
+    return n < 2 ? NULL : shadow;
 }
 
 /** Adds a <filter> that does in sRGB, as CSS wants it, what a function does in librsvg in linear
@@ -364,8 +366,9 @@ static char *add_filter(xmlNode *node, const char *function, const FlCssUnits *u
         fl_set_numbers(step, "stdDeviation", &v, 1);
     fl_set_attribute(filter, "id", id);
     fl_set_attribute(filter, "filterUnits", "userSpaceOnUse");
-    fl_set_attribute(filter, "x", "-100%"), fl_set_attribute(filter, "y", "-100%");
-    fl_set_attribute(filter, "width", "300%"), fl_set_attribute(filter, "height", "300%");
+    // functions have no region; percentages would be too small where the shape is scaled down
+    fl_set_attribute(filter, "x", "-1e7"), fl_set_attribute(filter, "y", "-1e7");
+    fl_set_attribute(filter, "width", "2e7"), fl_set_attribute(filter, "height", "2e7");
     fl_set_attribute(step, "color-interpolation-filters", "sRGB");
     return g_strdup_printf("url(#%s)", id);
 }

@@ -85,7 +85,7 @@ char *fl_css_word(const FlCssProperty *property, const char *value)
 /** Returns: true for "0px", "0 none", and the scheme "light dark". */
 static bool is_nothing(const char *value)
 {
-    return strstr(value, "none") || strstr(value, "light") ||
+    return fl_css_has_word(value, "none") || fl_css_has_word(value, "light") ||
            (is_number(value) && g_ascii_strtod(value, NULL) == 0);
 }
 

@@ -203,15 +203,15 @@ static void mend_gradient(xmlNode *node)
         xmlNodeSetName(stop, (const xmlChar *)"desc"); // kept, since its id may be referred to
 }
 
-/** Takes its template from a gradient or pattern that is a template of itself: librsvg would draw
- * neither. */
-static void mend_circle(const Mend *m, xmlNode *server)
+/** Gradients or patterns that are each other's templates: librsvg would draw none. The one with
+ * content, which the others need, gives up its template. */
+static void break_cycle(const Mend *m, xmlNode *server)
 {
     const xmlNode *at = server;
     for (int k = 0; at && k < MOST_CLIPS; k++) {
         g_autofree char *href = fl_href(at);
         at = href && *href == '#' ? g_hash_table_lookup(m->ids, href + 1) : NULL;
-        if (at == server)
+        if (at == server && xmlFirstElementChild(server))
             fl_drop_href(server);
     }
 }
@@ -388,7 +388,7 @@ static void mend(Mend *m, xmlNode *node)
     else if (fl_is(node, "filter"))
         mend_inputs(node);
     else if (fl_is_one_of(node, "linearGradient radialGradient pattern")) {
-        mend_circle(m, node);
+        break_cycle(m, node);
         mend_gradient(node);
     } else if (fl_is_one_of(node, "polygon polyline"))
         mend_points(node);

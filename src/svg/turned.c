@@ -53,13 +53,23 @@ static bool is_upright(const xmlNode *step)
            fl_is_one_of(step, "feTurbulence feTile feImage feDisplacementMap feConvolveMatrix");
 }
 
-/** Cuts what a filter makes of a turned element to its region, which librsvg leaves upright. */
+static bool holds_text(const xmlNode *node)
+{
+    bool found = fl_is(node, "text");
+    FL_EACH_ELEMENT (child, node)
+        found = found || holds_text(child);
+    return found;
+}
+
+/** Cuts what a filter makes of a turned element to its region, which librsvg leaves upright. The
+ * box of text is not known here. */
 static void cut_region(Turned *t, xmlNode *node, xmlNode *filter)
 {
     static const char *const names[] = {"x", "y", "width", "height"};
     const bool in_page = g_strcmp0(fl_attribute(filter, "filterUnits"), "userSpaceOnUse") == 0;
     FlCssBox box = {0, 0, t->units.width, t->units.height};
-    if (fl_is_set(node, "clip-path") || (!in_page && !fl_css_fill_box(node, &t->units, &box)))
+    if (fl_is_set(node, "clip-path") ||
+        (!in_page && (holds_text(node) || !fl_css_fill_box(node, &t->units, &box))))
         return;
     g_autofree char *id = g_strdup_printf("fl-turned-%d", t->n_made++);
     xmlNode *clip = xmlNewDocNode(node->doc, node->ns, (const xmlChar *)"clipPath", NULL);
