@@ -205,6 +205,53 @@ static void fluid_ends_without_steps(void)
     g_assert_cmpint(film.alpha[35 * SIDE + 35], ==, 255);
 }
 
+/* A half plane of fluid that grows by a tenth of a pixel a frame. */
+static void a_limit_that_moves_slowly_does_not_pop(void)
+{
+    g_auto(Film) film;
+    FlStyle *style = cut_out(false);
+    memset(style->mask, 255, STYLE_W * STYLE_H);
+    film_init(&film, style, "lazyfluids-steady", "1");
+    g_autofree uint8_t *before = g_malloc(PIXELS);
+    int most = 0;
+    for (int frame = 0; frame < 12; frame++) {
+        for (int p = 0; p < PIXELS; p++) {
+            const double inside = p / SIDE - 35.5 + .1 * frame;
+            film.guides.distance[p] = (float)inside;
+            film.guides.mask[p] = (uint8_t)lrint(255 * CLAMP(inside + .5, 0, 1));
+        }
+        paint(&film, 1);
+        for (int p = 0; p < PIXELS && frame > 0; p++)
+            most = MAX(most, abs(film.alpha[p] - before[p]));
+        memcpy(before, film.alpha, PIXELS);
+    }
+    g_test_message("alpha at a limit that moves by a tenth of a pixel: steps of at most %d", most);
+    g_assert_cmpint(most, <, 50);
+}
+
+/* A ribbon's faint rim is shown by the alpha of the drawing: it has the colour of the fluid. */
+static void a_ribbon_has_no_grey_rim(void)
+{
+    g_auto(Film) film;
+    FlStyle *style = cut_out(true);
+    for (int p = 0; p < STYLE_W * STYLE_H; p++)
+        for (int c = 0; c < 3 && style->mask[p] < 24; c++) // the faint rim is black
+            style->rgb[3 * p + c] = (uint8_t)(style->paper[c] * (255 - style->mask[p]) / 255);
+    film_init(&film, style, "lazyfluids-steady", "1");
+    double off = 0, n = 0;
+    for (int p = 0; p < PIXELS; p++) {
+        const double inside = MIN(28 - fabs(p % SIDE - 35.5), 3 - fabs(p / SIDE - 35.5));
+        film.guides.distance[p] = (float)inside;
+        film.guides.mask[p] = (uint8_t)lrint(255 * CLAMP(inside + .5, 0, 1));
+    }
+    paint(&film, 2);
+    for (int p = 0; p < PIXELS; p++)
+        if (film.guides.mask[p] == 255)
+            off += abs(film.rgb[3 * p] - CUT_OUT_RED), n++;
+    g_test_message("red of the rim of a ribbon: off by %.1f", off / n);
+    g_assert_cmpfloat(off / n, <, 1);
+}
+
 /* A ribbon of four sigmas is no wider than what its rim wants for itself. */
 static void a_ribbon_frays_less_than_a_body(void)
 {
@@ -627,6 +674,9 @@ int main(int argc, char **argv)
                     a_cut_out_has_the_alpha_of_its_exemplar_and_no_paper_in_its_colours);
     g_test_add_func("/lazy/a-thin-line-is-whole", a_thin_line_is_whole);
     g_test_add_func("/lazy/fluid-ends-without-steps", fluid_ends_without_steps);
+    g_test_add_func("/lazy/a-limit-that-moves-slowly-does-not-pop",
+                    a_limit_that_moves_slowly_does_not_pop);
+    g_test_add_func("/lazy/a-ribbon-has-no-grey-rim", a_ribbon_has_no_grey_rim);
     g_test_add_func("/lazy/a-ribbon-frays-less-than-a-body", a_ribbon_frays_less_than_a_body);
     g_test_add_func("/lazy/a-trimmed-cut-out-paints-nothing-far-outside",
                     a_trimmed_cut_out_paints_nothing_far_outside);

@@ -44,6 +44,7 @@ struct FlLazy {
     FlNnf warm;                 // likewise: the carried field; empty in a first frame
     float *motion;              // likewise: 2 per pixel; NULL if there is no motion
     uint16_t *half_width;       // likewise: fl_local_width(), up to ROOM
+    uint8_t *presence;          // likewise: of the fluid, 0..255
     bool shows;                 // the frame in hand is inspected when it is painted
     bool wants_terms;           // in the statistics
 };
@@ -94,6 +95,7 @@ static void clear_frame(FlLazy *lazy)
     fl_nnf_clear(&lazy->warm);
     g_clear_pointer(&lazy->motion, free);
     g_clear_pointer(&lazy->half_width, free);
+    g_clear_pointer(&lazy->presence, free);
 }
 
 void fl_lazy_free(FlLazy *lazy)
@@ -179,6 +181,26 @@ static void narrow_edge(const FlLazy *lazy, const float *distance)
     }
 }
 
+#define FADE 2.5f // px inside the limit of the fluid
+
+/* Narrows the edge, and finds how much of each pixel is fluid: 255 inside, falling to the limit
+ * from which on there are no matches. That goes with the blurred mask, not with the matches: a side
+ * that moves slowly would go out row by row. */
+static bool find_limits(FlLazy *lazy, const float *distance, GError **error)
+{
+    const size_t pixels = (size_t)lazy->width * (size_t)lazy->height;
+    const float *edge = lazy->level[0].planes.plane[FL_FLUID_PLANE_EDGE];
+    narrow_edge(lazy, distance);
+    if (!(lazy->presence = fl_alloc_unset(pixels, 1, "a mask", error)))
+        return false;
+    for (size_t p = 0; p < pixels; p++) {
+        const float slope = .1755f / (room(lazy, p) * lazy->sigma_px); // a px, of a straight limit
+        const float share = (edge[p] - FL_FLUID_LOWER) / (FADE * slope);
+        lazy->presence[p] = (uint8_t)ceilf(255 * CLAMP(share, 0, 1));
+    }
+    return true;
+}
+
 /* The last output and field in the place where they are now; they go themselves. */
 static bool carry_past(FlLazy *lazy, GError **error)
 {
@@ -213,9 +235,9 @@ static bool take_guides(FlLazy *lazy, FlGuides *guides, GError **error)
     memcpy(mask, guides->mask, pixels);
     const FlRestRule rule = rest_rule(lazy);
     fl_rest_shape(guides, &rule, shape);
-    if (!find_edge(lazy, mask, error) || (lazy->last.valid && !carry_past(lazy, error)))
+    if (!find_edge(lazy, mask, error) || (lazy->last.valid && !carry_past(lazy, error)) ||
+        !find_limits(lazy, guides->distance, error))
         return false;
-    narrow_edge(lazy, guides->distance);
     if (guides->disposable)
         fl_guides_clear(guides);
     fl_lazy_state_forget(&lazy->last);
@@ -518,27 +540,27 @@ static bool remember(FlLazy *lazy, GError **error)
     return true;
 }
 
-/* A colour as it is, where rgba has it times its alpha: where that is 0, the paper's. */
-static uint8_t straight(const uint16_t *rgba, int c, uint8_t paper)
-{
-    const uint32_t alpha = rgba[3], value = MIN(rgba[c], alpha);
-    return alpha > 0 ? (uint8_t)((value * 255 + alpha / 2) / alpha) : paper;
-}
+#define AROUND 4 // px from which faint paint takes its colour in thin parts
 
-#define FADE 2 // px around a pixel whose matches tell how much of it is fluid
-
-/* 1 in the fluid, falling to the contour of what has matches and 0 beyond; more than 0 at each
- * match, whose colour would be lost. */
-static float presence(const FlNnf *nnf, int x, int y)
+/* The colours of a cut-out as they are, where rgba has them times its alpha: where that is 0, the
+ * paper's. Faint paint has hardly a colour of its own, and thin parts show it by the alpha of the
+ * drawing: it takes that of stronger paint around, by a share that is 0 where there is room. */
+static void straight(const FlLazy *lazy, const uint16_t *rgba, int x, int y, float thin,
+                     uint8_t rgb[3])
 {
-    const int all = (2 * FADE + 1) * (2 * FADE + 1);
-    int n = 0;
-    for (int v = y - FADE; v <= y + FADE; v++)
-        for (int u = x - FADE; u <= x + FADE; u++)
-            n += nnf->match[CLAMP(v, 0, nnf->height - 1) * nnf->width + CLAMP(u, 0, nnf->width - 1)]
-                     .frame != FL_NO_MATCH;
-    const bool here = nnf->match[y * nnf->width + x].frame != FL_NO_MATCH;
-    return (float)MAX(2 * n - all, here) / (float)all;
+    const uint16_t *own = rgba + 4 * ((size_t)y * (size_t)lazy->width + (size_t)x);
+    const float faint = 1 - (float)own[3] / 65535, weight = .1f * thin * faint * faint;
+    float sum[4] = {own[0], own[1], own[2], own[3]};
+    for (int v = y - AROUND; weight > 0 && v <= y + AROUND; v += 2)
+        for (int u = x - AROUND; u <= x + AROUND; u += 2) {
+            const int column = CLAMP(u, 0, lazy->width - 1), row = CLAMP(v, 0, lazy->height - 1);
+            const uint16_t *near = rgba + 4 * ((size_t)row * (size_t)lazy->width + (size_t)column);
+            for (int c = 0; c < 4; c++)
+                sum[c] += weight * near[c];
+        }
+    for (int c = 0; c < 3; c++)
+        rgb[c] = sum[3] > 0 ? (uint8_t)(255 * MIN(sum[c], sum[3]) / sum[3] + .5f)
+                            : lazy->exemplar->paper[c];
 }
 
 /* The last output, which fades out where matches end: there would be steps, and specks beside the
@@ -552,17 +574,15 @@ static uint16_t *with_smooth_limits(const FlLazy *lazy, GError **error)
     uint16_t *rgba = fl_alloc(4 * pixels, sizeof *rgba, "a picture", error);
     if (!rgba)
         return NULL;
-#pragma omp parallel for schedule(static)
-    for (int y = 0; y < lazy->height; y++)
-        for (int x = 0; x < lazy->width; x++) {
-            const size_t p = (size_t)y * (size_t)lazy->width + (size_t)x;
-            const float share = presence(&past->nnf, x, y);
-            for (size_t c = 0; c < 4; c++) {
-                const float bare = exemplar->cut_out || c == 3 ? 0 : 257.0f * exemplar->paper[c];
-                const float full = (float)past->rgba[4 * p + c];
-                rgba[4 * p + c] = (uint16_t)(bare + share * (full - bare) + .5f);
-            }
-        }
+    for (size_t p = 0; p < pixels; p++) {
+        const float share = (float)lazy->presence[p] / 255;
+        for (size_t c = 0; c < 4; c++)
+            if (exemplar->cut_out || c == 3)
+                rgba[4 * p + c] = (uint16_t)(share * (float)past->rgba[4 * p + c] + .5f);
+            else
+                rgba[4 * p + c] =
+                    share > 0 ? past->rgba[4 * p + c] : (uint16_t)(257 * exemplar->paper[c]);
+    }
     return rgba;
 }
 
@@ -581,11 +601,13 @@ static bool write_output(const FlLazy *lazy, uint8_t *rgb, uint8_t *alpha, GErro
     }
     const uint16_t *rgba = blurred ? blurred : shown;
     for (size_t p = 0; p < pixels; p++) {
-        for (size_t c = 0; c < 3; c++)
-            rgb[3 * p + c] = lazy->exemplar->cut_out
-                                 ? straight(rgba + 4 * p, (int)c, lazy->exemplar->paper[c])
-                                 : (uint8_t)((rgba[4 * p + c] + 128) / 257);
+        const int x = (int)(p % (size_t)lazy->width), y = (int)(p / (size_t)lazy->width);
         const float own = room(lazy, p), drawn = (float)lazy->last.past.mask[p];
+        if (lazy->exemplar->cut_out)
+            straight(lazy, rgba, x, y, 1 - own, rgb + 3 * p);
+        else
+            for (size_t c = 0; c < 3; c++)
+                rgb[3 * p + c] = (uint8_t)((rgba[4 * p + c] + 128) / 257);
         if (alpha)
             alpha[p] = (uint8_t)(drawn + own * ((float)rgba[4 * p + 3] / 257 - drawn) + .5f);
     }
@@ -623,9 +645,11 @@ static bool paint(FlLazy *lazy, FlGuides *guides, uint8_t *rgb, uint8_t *alpha, 
         return true;
     }
     return find_thin_parts(lazy, guides, error) &&
-           (holds_still(lazy, guides) ||
-            (prepare(lazy, guides, error) && run_levels(lazy, stats, error) &&
-             remember(lazy, error))) &&
+           (holds_still(lazy, guides)
+                ? find_edge(lazy, lazy->last.past.mask, error) &&
+                      find_limits(lazy, guides->distance, error)
+                : (prepare(lazy, guides, error) && run_levels(lazy, stats, error) &&
+                   remember(lazy, error))) &&
            write_output(lazy, rgb, alpha, error);
 }
 
