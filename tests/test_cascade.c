@@ -382,6 +382,13 @@ static char *embedded(const char *root)
     return g_strndup(text, bytes);
 }
 
+/** Two pixels beside each other of a camera that was turned: one above the other. */
+static const char turned_picture[] =
+    "data:image/jpeg;base64,"
+    "/9j/4QAiRXhpZgAATU0AKgAAAAgAAQESAAMAAAABAAYAAAAAAAD/2wBDAP//////////////////////////"
+    "////////////////////////////////////////////////////////////wAALCAABAAIBAREA/8QAFAAB"
+    "AAAAAAAAAAAAAAAAAAAAAP/EABQQAQAAAAAAAAAAAAAAAAAAAAD/2gAIAQEAAD8AP//Z";
+
 static void images_keep_their_shape(void)
 {
     static const char *const roots[][2] = {
@@ -400,6 +407,16 @@ static void images_keep_their_shape(void)
     assert_value("<image id='a' width='2cm' href='" PIXEL "'/>", "height", "75.5905512");
     assert_value("<image id='a' width='auto' height='9' href='" PIXEL "'/>", "width", "9");
     assert_value("<image id='a' width='auto' href='" PIXEL "'/>", "height", "");
+    assert_value("<image id='a' width='9' href='data:image/svg+xml,%3csvg "
+                 "xmlns=\"http://www.w3.org/2000/svg\" width=\"2\" height=\"1\"/%3e'/>",
+                 "preserveAspectRatio", "none");
+    static const char *const turns[][2] = {{"from-image", "16"}, {"none", "4"}};
+    for (size_t i = 0; i < G_N_ELEMENTS(turns); i++) {
+        g_autofree char *content =
+            g_strdup_printf("<image id='a' width='8' style='image-orientation:%s' href='%s'/>",
+                            turns[i][0], turned_picture);
+        assert_value(content, "height", turns[i][1]);
+    }
 }
 
 static void gaps_of_librsvg_are_filled(void)
@@ -467,6 +484,7 @@ static void gaps_of_librsvg_are_filled(void)
                  "transform='rotate(9)'><rect width='8' height='4'/><text>a</text></g>",
                  "clip-path", "");
     assert_value("<path id='a' systemLanguage='xx'/>", "display", "none");
+    assert_value("<path id='a' requiredExtensions=''/>", "display", "none");
     assert_value("<switch><path id='a' systemLanguage='xx'/></switch>", "display", "");
     assert_value("<linearGradient id='g' gradientUnits='userSpaceOnUse'/>"
                  "<rect id='a' width='4' height='2' fill='url(#g)' transform='rotate(9)'/>",
@@ -494,10 +512,15 @@ static void gaps_of_librsvg_are_filled(void)
                     "<clipPath id='u'/><clipPath id='v' clip-path='url(#u)'/>"
                     "<s:path xmlns:s='http://www.w3.org/2000/svg' clip-path='url(#v)'/>"
                     "<use href='#s'/><symbol id='w' width='7' height='5'/><use href='#w'/>"
+                    "<g style='filter:invert(1)'/><text style='white-space:pre'>a</text>"
+                    "<path xmlns='' id='n'/>"
                     "<image href='data:image/svg+xml,%3csvg xmlns=\"http://www.w3.org/2000/svg\" "
                     "width=\"2\" height=\"1\"/%3e'/>");
     size_t bytes = 0;
     g_autofree char *text = fl_document_text(fl_svg_document(svg), &bytes);
+    g_assert_nonnull(strstr(text, "x=\"-1e7\" y=\"-1e7\""));
+    g_assert_nonnull(strstr(text, "xml:space=\"preserve\""));
+    g_assert_nonnull(strstr(text, "<desc xmlns=\"\" id=\"n\"/>"));
     g_assert_nonnull(strstr(text, "<feMerge dx=\"1\" result=\"r\""));
     g_assert_nonnull(strstr(text, "<feMergeNode in=\"fl-before-0\"/>"));
     g_assert_nonnull(strstr(text, "<feImage href=\"#fl-image-1\""));
