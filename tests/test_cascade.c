@@ -465,8 +465,8 @@ static void gaps_of_librsvg_are_filled(void)
     assert_value("<linearGradient id='a' href='#b'><stop/></linearGradient>"
                  "<linearGradient id='b' href='#a'/>",
                  "href", "");
-    assert_value("<linearGradient id='b' href='#a'><stop/></linearGradient>"
-                 "<linearGradient id='a' href='#b'/>",
+    assert_value("<linearGradient id='a' href='#b'/>"
+                 "<linearGradient id='b' href='#a'><stop/></linearGradient>",
                  "href", "#b");
     assert_value("<style xmlns='http://www.w3.org/1999/xhtml'>#a{fill:#123456}</style>"
                  "<path id='a'/>",
@@ -519,6 +519,7 @@ static void gaps_of_librsvg_are_filled(void)
     size_t bytes = 0;
     g_autofree char *text = fl_document_text(fl_svg_document(svg), &bytes);
     g_assert_nonnull(strstr(text, "x=\"-1e7\" y=\"-1e7\""));
+    g_assert_nonnull(strstr(text, "color-interpolation-filters=\"sRGB\""));
     g_assert_nonnull(strstr(text, "xml:space=\"preserve\""));
     g_assert_nonnull(strstr(text, "<desc xmlns=\"\" id=\"n\"/>"));
     g_assert_nonnull(strstr(text, "<feMerge dx=\"1\" result=\"r\""));
