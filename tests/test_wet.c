@@ -368,6 +368,31 @@ static void draw_stroke(int end, uint8_t *mask)
         mask[p] = p % SIDE >= 20 && p % SIDE < end && abs(p / SIDE - 100) < 15 ? 255 : 0;
 }
 
+/* An edge that goes back beyond the middle of what was there goes back all the same. */
+static void test_retreat(void)
+{
+    Scene *scene = scene_new();
+    g_auto(FlMovingEdge) before = {0};
+    g_auto(FlMovingEdge) edge = {0};
+    draw_stroke(120, scene->now);
+    g_assert_true(fl_moving_edge_look(&before, &scene->shape, NULL));
+    for (int p = 0; p < 105 * SIDE; p++)
+        scene->now[p] = 0;
+    scene->shape.motion = NULL;
+    scene->shape.distance_before = before.distance;
+    g_assert_true(fl_moving_edge_init(&edge, &scene->shape, &before, NULL));
+    int n = 0;
+    for (int i = 0; i < edge.n; i++) {
+        const FlEdgePoint *point = &edge.point[i];
+        if (point->x < 40 || point->x > 100 || point->y > 110)
+            continue;
+        g_assert_cmpfloat(point->speed, <, -2);
+        n++;
+    }
+    g_assert_cmpint(n, >, 20);
+    scene_free(scene);
+}
+
 /* A stroke that grows at its end advances there, and not at its new sides. */
 static void test_stroke(void)
 {
@@ -848,6 +873,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/a-stain-breaks-up-towards-its-sides", test_frayed);
     g_test_add_func("/wet/a-front-ends-alike-on-stains", test_front_over_stain);
     g_test_add_func("/wet/a-few-fingers-are-long-and-many-short", test_fingers);
+    g_test_add_func("/wet/a-retreat-is-whole", test_retreat);
     g_test_add_func("/wet/a-stroke-advances-at-its-end-and-not-at-its-sides", test_stroke);
     g_test_add_func("/wet/what-rests-marks-nothing", test_rest);
     g_test_add_func("/wet/what-vanishes-leaves-less-than-what-recedes", test_vanish);
