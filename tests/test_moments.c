@@ -168,8 +168,10 @@ static void smil_transforms_and_follows_paths(void)
     assert_at("<path id='p' d='M0 0h8'/><rect id='a'><animateMotion dur='2s'><mpath "
               "href='#p'/></animateMotion></rect>",
               1, "transform", "translate(4,0) rotate(0)");
+    assert_at(RECT("<animateMotion path='M0 0h10v10' dur='3s' calcMode='discrete' rotate='9'/>"), 1,
+              "transform", "translate(10,0) rotate(0)"); // browsers take no angle
 #define CORNERS(mode) RECT("<animateMotion values='0 0;8 0;8 2' dur='3s' calcMode='" mode "'/>")
-    assert_at(CORNERS("discrete"), 2, "transform", "translate(8,1.999999) rotate(0)");
+    assert_at(CORNERS("discrete"), 2, "transform", "translate(8,2) rotate(0)");
     assert_at(CORNERS("linear"), .75, "transform", "translate(4,0) rotate(0)");
 #define STAYS(values) RECT("<animateMotion values='" values "' dur='3s'/>")
     assert_at(STAYS("4 4;4 4;8 4"), 0, "transform", "translate(4,4) rotate(0)");
@@ -178,14 +180,14 @@ static void smil_transforms_and_follows_paths(void)
     assert_at(RECT("<animateTransform attributeName='transform' to='8, 4' dur='1s'/>"), .5,
               "transform", "translate(4 2)");
     assert_at(RECT("<animateMotion path='M0 0v4' dur='1s' repeatCount='2' accumulate='sum'/>"), 1.5,
-              "transform", "translate(0,5.9999996) rotate(0)");
+              "transform", "translate(0,6) rotate(0)");
 #define TWO(sum)                                                                                   \
     RECT("<animateMotion path='M0 0h8' dur='1s' fill='freeze'/><animateMotion path='M0 0v8' "      \
          "dur='2s' begin='1s'" sum "/><animateTransform type='scale' values='3' dur='9s' "         \
          "attributeName='transform'/>")
     assert_at(TWO(""), 2, "transform", "translate(0,4) rotate(0) scale(3)");
     assert_at(TWO(" additive='sum'"), 2, "transform",
-              "translate(0,4) rotate(0) translate(7.9999992,0) rotate(0) scale(3)");
+              "translate(0,4) rotate(0) translate(8,0) rotate(0) scale(3)");
 }
 
 #define CSS(rules) "<style>" rules "</style><rect id='a' width='5' height='5'/>"
@@ -199,6 +201,19 @@ static void css_has_its_values(void)
               "opacity", "0.25");
     assert_at(CSS("@keyframes k{to{opacity:0}}#a{opacity:.5;animation:k 1s linear forwards}"), 4,
               "opacity", "0");
+    assert_at(
+        CSS("@keyframes k{from{fill:inherit}to{fill:#000000}}#a{animation:k 1s linear}svg{fill:"
+            "#ffffff}"),
+        .5, "fill", "rgb(128, 128, 128)");
+    assert_at(CSS("@keyframes k{from{stroke-width:initial}to{stroke-width:3}}"
+                  "#a{stroke-width:9;animation:k 1s linear}"),
+              .5, "stroke-width", "2");
+    assert_at(CSS("@-webkit-keyframes k{to{-webkit-transform:translate(8px)}}"
+                  "#a{-webkit-animation:k 1s linear}"),
+              .5, "transform", "matrix(1, 0, 0, 1, 4, 0)");
+    assert_at(CSS("@keyframes k{to{opacity:.5}}@-webkit-keyframes k{to{opacity:0}}"
+                  "#a{animation:k 1s linear}"),
+              .5, "opacity", "0.75"); // the name without a prefix counts
     assert_at(CSS("@keyframes k{50%{opacity:0}}#a{animation:k 2s linear infinite}"), 4.5, "opacity",
               "0.5");
     assert_at(CSS("@keyframes k{from{opacity:0}}#a{animation:k 1s linear infinite alternate}"),

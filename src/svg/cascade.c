@@ -61,21 +61,6 @@ static void warn_of_value(Cascade *c, const FlCssProperty *property, const char 
 
 /* ---- declared values ------------------------------------------------------------------------- */
 
-/** The property that a name of WebKit stands for, or one that is a part of another. */
-static const char *usual_name(const char *name, const char *value)
-{
-    const char *plain = g_str_has_prefix(name, "-webkit-") ? name + 8 : name;
-    if (strcmp(name, "text-decoration-line") == 0)
-        return g_intern_static_string("text-decoration");
-    if (strcmp(plain, "mask-image") == 0 && g_str_has_prefix(value, "url("))
-        return g_intern_static_string("mask");
-    return plain != name &&
-                   fl_css_has_word("transform transform-origin transform-box clip-path mask filter",
-                                   plain)
-               ? g_intern_string(plain)
-               : name;
-}
-
 /** Warns if a value of `animation` names keyframes. */
 static void warn_of_animation(Cascade *c, const char *value)
 {
@@ -118,7 +103,7 @@ static void declare_every_property(Cascade *c, GArray *values, const FlCssDeclar
 /** Takes a declaration over one of lower priority. */
 static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d)
 {
-    const char *name = usual_name(d->name, d->value);
+    const char *name = d->name;
     if (strcmp(name, "all") == 0) {
         declare_every_property(c, values, d);
         return;
@@ -396,16 +381,22 @@ typedef struct Animated {
     GPtrArray *owned; // the texts of animated values
 } Animated;
 
-static const char *underlying_value(const void *data, const char *name)
+static const char *underlying_value(const void *data, const char *name, const char *text)
 {
     const Animated *a = data;
-    const Value *value = find_value(a->values, name);
+    const Value *value = text ? NULL : find_value(a->values, name);
     const FlCssProperty *property = fl_css_property(name);
-    const char *attribute = value ? NULL : fl_attribute(a->node, name);
-    return value                           ? value->text
-           : attribute                     ? attribute
-           : property && property->initial ? property->initial
-                                           : "";
+    text = text ? text : value ? value->text : fl_attribute(a->node, name);
+    const char *keyword = property && text ? resolve_keyword(property, text) : NULL;
+    if (keyword && strcmp(keyword, "inherit") == 0) {
+        char *inherited = fl_inherited_property(a->node->parent, name);
+        if (inherited)
+            g_ptr_array_add(a->owned, inherited);
+        text = inherited;
+    } else if (keyword) {
+        text = keyword;
+    }
+    return text ? text : property && property->initial ? property->initial : "";
 }
 
 /** An animated value is stronger than all but an important one. */
@@ -444,8 +435,9 @@ static bool animate(Cascade *c, const xmlNode *node, GArray *values, const Style
     }
     if (animations)
         fl_css_animations_apply(animations, c->sheet, c->seconds,
-                                &(FlCssContext){&style->units, find_variable, style},
-                                underlying_value, take_value, &animated, c->length);
+                                &(FlCssContext){&style->units, find_variable, style,
+                                                underlying_value, take_value, &animated},
+                                c->length);
     return animations != NULL;
 }
 

@@ -192,14 +192,16 @@ static char *between_paths(const char *from, const char *to, double q)
     return g_strdup_printf("path(\"%s\")", data ? data : q < .5 ? a : b);
 }
 
-/** A value with its variables put in, or the colour that it stands for; to be freed. */
-static char *substituted(const char *value, const FlCssContext *context)
+/** A value with its variables put in, or what it stands for; to be freed. */
+static char *substituted(const char *property, const char *value, const FlCssContext *context)
 {
     if (g_ascii_strcasecmp(value, "currentcolor") == 0)
-        return g_strdup(context->variable(context->data, value));
+        return g_strdup(context->variable(context->style, value));
     char *text =
-        strstr(value, "var(") ? fl_css_substitute(value, context->variable, context->data) : NULL;
-    return text ? g_strstrip(text) : g_strdup(value);
+        strstr(value, "var(") ? fl_css_substitute(value, context->variable, context->style) : NULL;
+    if (!text)
+        return g_strdup(context->underlying(context->data, property, value));
+    return g_strstrip(text);
 }
 
 /** A value between those of the keyframes around a progress; `typed`: a variable of @property. */
@@ -223,7 +225,8 @@ static char *between(const GArray *frames, const char *property, double p, const
             has_end = true;
         }
     }
-    g_autofree char *own_from = substituted(from, context), *own_to = substituted(to, context);
+    g_autofree char *own_from = substituted(property, from, context),
+                    *own_to = substituted(property, to, context);
     from = own_from, to = own_to;
     if (!has_end && start >= 1)
         return g_strdup(from);
@@ -281,9 +284,7 @@ static char *sum_of(const char *property, const char *base, char *value)
 }
 
 void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet *sheet,
-                             double seconds, const FlCssContext *context,
-                             FlCssUnderlying *underlying, FlCssTake *take, void *data,
-                             FlFilmLength *length)
+                             double seconds, const FlCssContext *context, FlFilmLength *length)
 {
     for (int i = 0; animations->list[NAME] && animations->list[NAME][i]; i++) {
         g_autofree char *plain = fl_css_string_or_url(animations->list[NAME][i]);
@@ -298,7 +299,8 @@ void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet
             continue;
         g_autoptr(GPtrArray) properties = properties_of(frames);
         for (guint k = 0; k < properties->len; k++) {
-            const char *property = properties->pdata[k], *base = underlying(data, property);
+            const char *property = properties->pdata[k],
+                       *base = context->underlying(context->data, property, NULL);
             const char *typed = g_hash_table_lookup(sheet->initial, property);
             base = *base || !typed ? base : typed;
             const bool adds = strcmp(longhand(animations, COMPOSITION, i), "replace") != 0;
@@ -308,7 +310,7 @@ void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet
                                                                              : base;
             char *value = between(frames, property, p, longhand(animations, TIMING, i), missing,
                                   typed != NULL, context);
-            take(data, property, adds ? sum_of(property, base, value) : value);
+            context->take(context->data, property, adds ? sum_of(property, base, value) : value);
         }
     }
 }

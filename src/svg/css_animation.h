@@ -15,29 +15,31 @@ void fl_css_animations_free(FlCssAnimations *animations); // NULL is fine
 /** Sets `animation` or one of its longhands; declarations come in the order of the cascade. */
 void fl_css_animations_set(FlCssAnimations *animations, const char *property, const char *value);
 
-/** The element whose values are read: its units and custom properties. */
-typedef struct FlCssContext {
-    const FlCssUnits *units;
-    FlCssVariable *variable;
-    const void *data; // is handed to `variable`
-} FlCssContext;
-
-/** Gives the value of a property of the element without animations; "" without a value. */
-typedef const char *FlCssUnderlying(const void *data, const char *property);
+/** Gives what a value of a property stands for; NULL: the value of the element without animations.
+ * "" without a value. */
+typedef const char *FlCssUnderlying(const void *data, const char *property, const char *value);
 
 /** Takes the value of a property that an animation gives, and ownership of `value`. */
 typedef void FlCssTake(void *data, const char *property, char *value);
 
+/** The element whose values are read: its units and custom properties. */
+typedef struct FlCssContext {
+    const FlCssUnits *units;
+    FlCssVariable *variable;
+    const void *style; // is handed to `variable`
+    FlCssUnderlying *underlying;
+    FlCssTake *take;
+    void *data; // is handed to the two before
+} FlCssContext;
+
 /**
- * Calls `take` for each property that is animated after so many seconds, those of later animations
- * last. Values may contain calc(); variables in them are put in.
+ * Calls context->take for each property that is animated after so many seconds, those of later
+ * animations last. Values may contain calc(); variables in them are put in.
  *
  * length: collects the ends and loops of the animations; may be NULL.
  */
 void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet *sheet,
-                             double seconds, const FlCssContext *context,
-                             FlCssUnderlying *underlying, FlCssTake *take, void *data,
-                             FlFilmLength *length);
+                             double seconds, const FlCssContext *context, FlFilmLength *length);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlCssAnimations, fl_css_animations_free)
 

@@ -113,7 +113,7 @@ static bool multiply_offset(FlAffine *all, GHashTable *effects, const FlCssUnits
     const char *rotate = get(effects, "offset-rotate");
     const char *anchor_text = get(effects, "offset-anchor");
     const FlCssBox page = {0, 0, units->width, units->height};
-    double direction = 0, angle = 0;
+    double direction = 0, angle = 0, along = 0;
     bool evenodd;
     FlPoint at, anchor = origin;
     if (!path)
@@ -122,8 +122,13 @@ static bool multiply_offset(FlAffine *all, GHashTable *effects, const FlCssUnits
         !fl_css_position(anchor_text, units, box, &anchor))
         return false;
     g_autoptr(FlOutlines) shape = fl_css_basic_shape(path, units, page, &evenodd);
-    if (!shape || !fl_css_place_on(shape, distance ? distance : "0", units, &at, &direction))
+    const double whole = shape ? fl_css_walk_along(shape, INFINITY, &at, &direction) : 0;
+    if (!shape || shape->n_cubics == 0 ||
+        !fl_css_number(distance ? distance : "0", units, whole, &along))
         return false;
+    if (shape->subpath[0].closed && whole > 0)
+        along -= whole * floor(along / whole);
+    fl_css_walk_along(shape, along, &at, &direction);
     g_auto(GStrv) part = fl_css_split(rotate ? rotate : "auto", ' ');
     bool follows = false;
     for (int i = 0; part[i]; i++) {
@@ -395,13 +400,12 @@ static void apply_filter(GHashTable *effects, xmlNode *node, const FlCssUnits *u
 /** The background of the whole page becomes a rectangle below everything. */
 static const char *apply_background(GHashTable *effects, xmlNode *node, const FlCssUnits *units)
 {
-    const char *name = value_of(effects, "background-color") ? "background-color" : "background";
-    const char *value = fl_is_root(node) ? value_of(effects, name) : NULL;
+    const char *value = fl_is_root(node) ? value_of(effects, "background") : NULL;
     g_autofree char *colour = value ? fl_css_colour(value) : NULL;
     if (!value || (colour && strcmp(colour, "transparent") == 0))
         return NULL;
     if (!colour)
-        return name;
+        return "background";
     double box[4] = {0, 0, units->width, units->height};
     fl_view_box(node, box);
     static const char *const names[] = {"x", "y", "width", "height"};
@@ -495,7 +499,9 @@ static void apply_path_length(xmlNode *node, const FlCssUnits *units)
     if (!text || !fl_css_number(text, units, 0, &wanted) || !(wanted > 0))
         return;
     g_autoptr(FlOutlines) outlines = fl_css_outlines(node, units);
-    const double length = fl_css_outline_length(outlines);
+    FlPoint end;
+    double direction;
+    const double length = fl_css_walk_along(outlines, INFINITY, &end, &direction);
     fl_set_attribute(node, "pathLength", NULL);
     if (length > 0) // a hair more: cairo draws caps of a dash that begins at the end
         scale_stroke(node, dashes, length / wanted * (1 + 1e-4), units);

@@ -108,8 +108,7 @@ bool fl_css_fill_box(const xmlNode *node, const FlCssUnits *units, FlCssBox *box
 
 /* ---- lengths and places ---------------------------------------------------------------------- */
 
-/** Walks along outlines. Returns: the length up to `target`, where it stops with *place set. */
-static double walk_along(const FlOutlines *outlines, double target, FlPoint *place,
+double fl_css_walk_along(const FlOutlines *outlines, double target, FlPoint *place,
                          double *direction)
 {
     const FlAffine none = FL_AFFINE_NONE;
@@ -135,26 +134,6 @@ static double walk_along(const FlOutlines *outlines, double target, FlPoint *pla
         }
     }
     return length;
-}
-
-double fl_css_outline_length(const FlOutlines *outlines)
-{
-    FlPoint place;
-    double direction;
-    return walk_along(outlines, INFINITY, &place, &direction);
-}
-
-bool fl_css_place_on(const FlOutlines *outlines, const char *distance, const FlCssUnits *units,
-                     FlPoint *place, double *direction)
-{
-    double along = 0;
-    const double whole = walk_along(outlines, INFINITY, place, direction);
-    if (outlines->n_cubics == 0 || !fl_css_number(distance, units, whole, &along))
-        return false;
-    const bool closed = outlines->subpath[0].closed;
-    along = closed && whole > 0 ? along - whole * floor(along / whole) : CLAMP(along, 0, whole);
-    walk_along(outlines, along, place, direction);
-    return true;
 }
 
 /* ---- path data ------------------------------------------------------------------------------- */

@@ -28,13 +28,10 @@ FlOutlines *fl_css_outlines_of_path(const char *d);
 FlOutlines *fl_css_basic_shape(const char *text, const FlCssUnits *units, FlCssBox box,
                                bool *evenodd);
 
-/** The length of outlines in user units. */
-double fl_css_outline_length(const FlOutlines *outlines);
-
-/** A place at a distance along outlines, and the direction there in degrees; false: there is none.
- */
-bool fl_css_place_on(const FlOutlines *outlines, const char *distance, const FlCssUnits *units,
-                     FlPoint *place, double *direction);
+/** Walks along outlines. Returns: the length up to `target`, where it stops with the place and the
+ * direction in degrees. */
+double fl_css_walk_along(const FlOutlines *outlines, double target, FlPoint *place,
+                         double *direction);
 
 /** Outlines, mapped by `map`, as path data; NULL if there is none. To be freed. */
 char *fl_css_outline_text(const FlOutlines *outlines, const FlAffine *map);

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "svg/css_condition.h"
+#include "svg/css_properties.h"
 #include "svg/css_scan.h"
 #include "svg/document.h"
 #include <limits.h>
@@ -123,6 +124,19 @@ static bool cut_important(char *value)
     return true;
 }
 
+/** The interned name of the property that a name of WebKit stands for, or of that which has the
+ * same effect. */
+static const char *usual_name(const char *name, const char *value)
+{
+    const char *plain = g_str_has_prefix(name, "-webkit-") ? name + 8 : name;
+    const bool mask = strcmp(plain, "mask-image") == 0 && g_str_has_prefix(value, "url(");
+    plain = strcmp(name, "text-decoration-line") == 0 ? "text-decoration"
+            : strcmp(name, "background-color") == 0   ? "background"
+            : mask                                    ? "mask"
+                                                      : plain;
+    return g_intern_string(plain == name || fl_css_property(plain) ? plain : name);
+}
+
 /** Adds "name: value"; text without a colon, or with a bracket that is not open, is dropped, as in
  * a browser. */
 static void add_declaration(GArray *list, const char *text, size_t n)
@@ -140,7 +154,7 @@ static void add_declaration(GArray *list, const char *text, size_t n)
     g_autofree char *folded =
         g_str_has_prefix(plain, "--") ? g_strdup(plain) : g_ascii_strdown(plain, -1);
     const bool important = cut_important(value);
-    const FlCssDeclaration d = {g_intern_string(folded), g_strdup(value), important};
+    const FlCssDeclaration d = {usual_name(folded, value), g_strdup(value), important};
     g_array_append_val(list, d);
 }
 
@@ -397,8 +411,10 @@ static void read_at_rule(Reader *reader, const char *name, const char *prelude, 
             warn(reader, "rule", prelude, "asks for a selector that is not known and is left out");
     } else if ((strcmp(name, "keyframes") == 0 || strcmp(name, "-webkit-keyframes") == 0) &&
                block) {
-        g_autofree char *plain = fl_css_string_or_url(prelude);
-        read_keyframes(reader, plain ? plain : prelude, block);
+        g_autofree char *string = fl_css_string_or_url(prelude);
+        const char *plain = string ? string : prelude;
+        if (*name != '-' || !g_hash_table_contains(reader->sheet->keyframes, plain))
+            read_keyframes(reader, plain, block);
     } else if (strcmp(name, "property") == 0 && block)
         read_property(reader, prelude, block);
     else if (strcmp(name, "font-face") == 0)

@@ -8,6 +8,13 @@
 
 /* ---- values ---------------------------------------------------------------------------------- */
 
+/** Returns: true if an attribute of an animation is a word. */
+static bool says(const FlAnimation *a, const char *name, const char *word)
+{
+    g_autofree char *text = fl_trimmed_attribute(a->node, name);
+    return g_strcmp0(text, word) == 0;
+}
+
 static char **list_of(const char *text)
 {
     char **list = g_strsplit(text ? text : "", ";", -1);
@@ -71,13 +78,12 @@ static double *key_times(const FlAnimation *a, char **values, int n, bool paced,
     g_auto(GStrv) key = list_of(text);
     double *times = g_new0(double, n + 1);
     if (text && !paced) {
-        g_autofree char *mode = fl_trimmed_attribute(a->node, "calcMode");
         bool good = (int)g_strv_length(key) == n;
         for (int i = 0; i < n && good; i++) {
             times[i] = g_ascii_strtod(key[i], NULL);
             good = i == 0 ? times[i] == 0 : times[i] >= times[i - 1];
         }
-        if (good && (g_strcmp0(mode, "discrete") == 0 || times[n - 1] == 1))
+        if (good && (says(a, "calcMode", "discrete") || times[n - 1] == 1))
             return times;
         g_free(times);
         return NULL;
@@ -135,13 +141,11 @@ static bool is_discrete(const char *name)
 static char *value_at(const FlAnimation *a, const char *base, double seconds, bool *adds)
 {
     const FlInterval *interval = fl_interval_at(a, seconds);
-    g_autofree char *additive = fl_trimmed_attribute(a->node, "additive");
-    g_autofree char *accumulate = fl_trimmed_attribute(a->node, "accumulate");
     g_autofree char *written = fl_trimmed_attribute(a->node, "calcMode");
     const char *mode = written ? written : "linear";
     double rounds;
     int at;
-    *adds = additive && strcmp(additive, "sum") == 0;
+    *adds = says(a, "additive", "sum");
     if (!interval)
         return NULL;
     g_auto(GStrv) values = values_of(a, base, adds);
@@ -160,14 +164,11 @@ static char *value_at(const FlAnimation *a, const char *base, double seconds, bo
     char *value = p > 0 ? fl_interpolate(values[at], values[at + 1], p) : g_strdup(values[at]);
     if (!value) // not interpolable, such as "visible" and "hidden"
         value = g_strdup(values[p < .5 ? at : at + 1]);
-    if (rounds > 0 && accumulate && strcmp(accumulate, "sum") == 0) {
-        char *sum = fl_add_values(value, values[n - 1], rounds);
-        if (sum) {
-            g_free(value);
-            value = sum;
-        }
-    }
-    return value;
+    g_autofree char *before = value; // where nothing can be added up
+    char *sum = rounds > 0 && says(a, "accumulate", "sum")
+                    ? fl_add_values(value, values[n - 1], rounds)
+                    : NULL;
+    return sum ? sum : g_steal_pointer(&before);
 }
 
 /* ---- putting into effect --------------------------------------------------------------------- */
@@ -228,22 +229,43 @@ static void apply_transform(const FlAnimation *a, double seconds)
     fl_set_attribute(a->target, a->attribute, all);
 }
 
-/** The path of animateMotion: its own, that of an <mpath>, or lines between its values, *corners,
- * to be freed; NULL: none. */
+/** The path that an animateMotion names, in itself or by an <mpath>; NULL: none. */
+static FlOutlines *named_path(const FlTimeline *timeline, const FlAnimation *a, bool *named)
+{
+    const FlCssUnits units = {300, 150, 16, 16, 300, 150};
+    const xmlNode *mpath = NULL;
+    FL_EACH_ELEMENT (child, a->node)
+        mpath = !mpath && fl_is(child, "mpath") ? child : mpath;
+    const xmlNode *shown = mpath ? fl_timeline_referred(timeline, mpath, NULL) : NULL;
+    g_autofree char *path = fl_trimmed_attribute(a->node, "path");
+    *named = mpath || path;
+    return shown            ? fl_css_outlines(shown, &units)
+           : !mpath && path ? fl_css_outlines_of_path(path)
+                            : NULL;
+}
+
+/** The nodes of a path as values, "x,y". */
+static char **nodes_of(const FlOutlines *path)
+{
+    char **nodes = g_new0(char *, path->n_cubics + 2);
+    for (int i = 0; i <= path->n_cubics && path->n_cubics > 0; i++) {
+        const FlPoint p = path->cubic[MAX(i - 1, 0)].p[i > 0 ? 3 : 0];
+        g_autofree char *x = fl_css_number_text(p.x), *y = fl_css_number_text(p.y);
+        nodes[i] = g_strconcat(x, ",", y, NULL);
+    }
+    return nodes;
+}
+
+/** The path of animateMotion: the one that it names, or lines between its values, *corners, to be
+ * freed; discrete, they are the nodes of the path. NULL: none. */
 static FlOutlines *motion_path(const FlTimeline *timeline, const FlAnimation *a, char ***corners)
 {
-    for (const xmlNode *child = a->node->children; child; child = child->next) {
-        if (!fl_is(child, "mpath"))
-            continue;
-        const xmlNode *path = fl_timeline_referred(timeline, child, NULL);
-        const FlCssUnits units = {300, 150, 16, 16, 300, 150};
-        return path ? fl_css_outlines(path, &units) : NULL;
-    }
-    g_autofree char *path = fl_trimmed_attribute(a->node, "path");
-    if (path)
-        return fl_css_outlines_of_path(path);
-    bool adds = true;
-    *corners = values_of(a, "0,0", &adds);
+    bool adds = true, named;
+    g_autoptr(FlOutlines) path = named_path(timeline, a, &named);
+    const bool jumps = says(a, "calcMode", "discrete") && !fl_attribute(a->node, "keyPoints");
+    if (named && (!path || !jumps))
+        return g_steal_pointer(&path);
+    *corners = path ? nodes_of(path) : values_of(a, "0,0", &adds);
     g_autofree char *joined = g_strjoinv(" L", *corners), *d = g_strconcat("M", joined, NULL);
     return *joined ? fl_css_outlines_of_path(d) : NULL;
 }
@@ -273,37 +295,24 @@ static double key_point(const FlAnimation *a, char **corners, double share)
     return at + 1 < n ? place[at] + p * (place[at + 1] - place[at]) : place[at];
 }
 
-/** The place at a share of a path, and the direction there; false: it is no path. */
-static bool place_at(const FlOutlines *path, double share, FlPoint *place, double *direction)
-{
-    const FlCssUnits units = {0};
-    g_autofree char *number = fl_css_number_text(CLAMP(share, 0, 0.9999999) * 100);
-    g_autofree char *distance = g_strconcat(number, "%", NULL);
-    return fl_css_place_on(path, distance, &units, place, direction);
-}
-
 /** animateMotion: moves in front of the element's own transform. */
 static void apply_motion(const FlTimeline *timeline, const FlAnimation *a, double seconds)
 {
     const FlInterval *interval = fl_interval_at(a, seconds);
     g_auto(GStrv) corners = NULL;
     g_autoptr(FlOutlines) path = interval ? motion_path(timeline, a, &corners) : NULL;
-    g_autofree char *rotate = fl_trimmed_attribute(a->node, "rotate");
     const char *own = fl_attribute(a->target, "transform");
-    g_autofree char *accumulate = fl_trimmed_attribute(a->node, "accumulate");
     double rounds, direction = 0;
     FlPoint at, end;
-    if (!path)
+    if (!path || path->n_cubics == 0)
         return;
     const double share = key_point(a, corners, fl_share_of_round(a, interval, seconds, &rounds));
-    if (!place_at(path, 1, &end, &direction) || !place_at(path, share, &at, &direction))
-        return;
-    if (g_strcmp0(accumulate, "sum") == 0)
+    const double whole = fl_css_walk_along(path, INFINITY, &end, &direction);
+    fl_css_walk_along(path, share * whole, &at, &direction);
+    if (says(a, "accumulate", "sum"))
         at.x += rounds * end.x, at.y += rounds * end.y;
-    const bool follows = rotate && g_str_has_prefix(rotate, "auto");
-    double angle = follows  ? direction + (strcmp(rotate, "auto-reverse") == 0 ? 180 : 0)
-                   : rotate ? g_ascii_strtod(rotate, NULL)
-                            : 0;
+    const bool reverse = says(a, "rotate", "auto-reverse"); // browsers take no angle
+    const double angle = reverse ? direction + 180 : says(a, "rotate", "auto") ? direction : 0;
     g_autofree char *x = fl_css_number_text(at.x), *y = fl_css_number_text(at.y);
     g_autofree char *turn = fl_css_number_text(angle);
     g_autofree char *all =
@@ -343,9 +352,8 @@ static void apply(const FlAnimation *a, double seconds)
 /** Returns: true for an animateMotion in effect that replaces those before it. */
 static bool replaces(const FlAnimation *a, double seconds)
 {
-    g_autofree char *additive = fl_trimmed_attribute(a->node, "additive");
     return fl_is(a->node, "animateMotion") && fl_interval_at(a, seconds) &&
-           g_strcmp0(additive, "sum") != 0;
+           !says(a, "additive", "sum");
 }
 
 void fl_smil_apply(xmlDoc *doc, double seconds, FlFilmLength *length)
