@@ -498,6 +498,17 @@ static void gaps_of_librsvg_are_filled(void)
                  "fl-alpha");
     assert_value("<filter><feOffset id='a' in='SourceAlpha'/><feFlood/></filter>", "in",
                  "SourceAlpha");
+    assert_value("<filter><feFlood/><feOffset id='a' in='FillPaint'/></filter>", "in", "");
+    assert_value("<filter><feFlood result='r'/><feOffset id='a' in='r'/></filter>", "in", "r");
+    assert_value("<filter><feFlood result='r'/><feMerge><feMergeNode id='a' in='r'/>"
+                 "<feMergeNode in='s'/></feMerge></filter>",
+                 "in", "r");
+    assert_value("<marker id='a' orient='.25turn'/>", "orient", "90");
+    assert_value("<marker id='a' orient='auto'/>", "orient", "auto");
+    assert_value("<image id='a' preserveAspectRatio='defer none'/>", "preserveAspectRatio", "");
+    assert_value("<svg id='a' preserveAspectRatio='xMidYMax slice'/>", "preserveAspectRatio",
+                 "xMidYMax slice");
+    assert_value("<svg id='a' viewBox='0 0 10'/>", "viewBox", "");
     g_autoptr(FlSvg) svg =
         open_svg_of("<filter><feFlood/><feDropShadow dx='1' result='r'/></filter>"
                     "<filter><feImage href='#s' x='7' y='5'/></filter>"
@@ -513,6 +524,7 @@ static void gaps_of_librsvg_are_filled(void)
                     "<s:path xmlns:s='http://www.w3.org/2000/svg' clip-path='url(#v)'/>"
                     "<use href='#s'/><symbol id='w' width='7' height='5'/><use href='#w'/>"
                     "<g style='filter:invert(1)'/><text style='white-space:pre'>a</text>"
+                    "<text> End<tspan>\n more <tspan>x</tspan></tspan> </text>"
                     "<path xmlns='' id='n'/>"
                     "<image href='data:image/svg+xml,%3csvg xmlns=\"http://www.w3.org/2000/svg\" "
                     "width=\"2\" height=\"1\"/%3e'/>");
@@ -521,6 +533,7 @@ static void gaps_of_librsvg_are_filled(void)
     g_assert_nonnull(strstr(text, "x=\"-1e7\" y=\"-1e7\""));
     g_assert_nonnull(strstr(text, "color-interpolation-filters=\"sRGB\""));
     g_assert_nonnull(strstr(text, "xml:space=\"preserve\""));
+    g_assert_nonnull(strstr(text, ">End<tspan> more <tspan>x</tspan></tspan></text>"));
     g_assert_nonnull(strstr(text, "<desc xmlns=\"\" id=\"n\"/>"));
     g_assert_nonnull(strstr(text, "<feMerge dx=\"1\" result=\"r\""));
     g_assert_nonnull(strstr(text, "<feMergeNode in=\"fl-before-0\"/>"));

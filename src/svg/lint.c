@@ -2,6 +2,7 @@
 
 #include "svg/css_colour.h"
 #include "svg/document.h"
+#include "svg/normalise.h"
 #include "svg/path_data.h"
 #include <string.h>
 
@@ -140,8 +141,12 @@ static char *mean_colour(const char *arguments)
  */
 static void check_foreign(const Lint *lint, xmlNode *node)
 {
-    if (fl_is(node->parent, "switch"))
-        return; // it has something else to draw
+    if (fl_is(node->parent, "switch")) {
+        if (fl_is_eligible(node) || fl_attribute(node, "requiredFeatures"))
+            warn(lint, node,
+                 "the HTML in <foreignObject> is left out: what <switch> has besides is drawn");
+        return;
+    }
     const xmlNode *box = xmlFirstElementChild(node);
     g_autofree char *background = box ? fl_property(box, "background") : NULL;
     g_autofree char *name = NULL, *arguments = NULL;
@@ -167,6 +172,12 @@ static bool is_list(const xmlNode *node, const char *name)
     return text && strpbrk(text, " ,\t\r\n");
 }
 
+static bool has_value(const xmlNode *node, const char *property, const char *wanted)
+{
+    g_autofree char *value = fl_property(node, property);
+    return value && strcmp(value, wanted) == 0;
+}
+
 /** Warns of text that librsvg cannot lay out. */
 static void check_text(const Lint *lint, const xmlNode *node)
 {
@@ -178,18 +189,16 @@ static void check_text(const Lint *lint, const xmlNode *node)
     else if (is_list(node, "x") || is_list(node, "y") || is_list(node, "dx") ||
              is_list(node, "dy") || fl_attribute(node, "rotate"))
         warn(lint, node, "places and turns of single letters are left out");
+    g_autofree char *paint = fl_property(node, "fill");
+    const xmlNode *pattern = fl_referred_by(paint, "pattern", lint->ids);
+    if (pattern && !has_value(pattern, "patternUnits", "userSpaceOnUse"))
+        warn(lint, node, "the pattern is laid in the box of the ink, not of the letters");
     if (fl_attribute(node, "textLength"))
         warn(lint, node, "textLength is left out: the text has its own width");
     const char *spacing = fl_attribute(node, "word-spacing");
     char *unit = NULL;
     if (spacing && g_ascii_strtod(spacing, &unit) != 0 && !*unit) // with a unit it was told before
         warn(lint, node, "word-spacing is left out");
-}
-
-static bool has_value(const xmlNode *node, const char *property, const char *wanted)
-{
-    g_autofree char *value = fl_property(node, property);
-    return value && strcmp(value, wanted) == 0;
 }
 
 /** Returns: true if a marker of a path turns with it. */

@@ -83,6 +83,27 @@ static bool redirect(xmlNode *node, const char *input, const char *name)
     return found;
 }
 
+/** Drops inputs that no step before has as result: browsers read the step before then, and librsvg
+ * leaves out all that is filtered. `results`: of the steps before; NULL: none. */
+static void drop_unknown_inputs(xmlNode *node, GHashTable *results)
+{
+    static const char *const inputs[] = {"in", "in2"};
+    g_autoptr(GHashTable) own = g_hash_table_new(g_str_hash, g_str_equal);
+    FL_EACH_ELEMENT (step, node) {
+        for (size_t i = 0; i < G_N_ELEMENTS(inputs); i++) {
+            const char *in = fl_attribute(step, inputs[i]);
+            if (in && !fl_css_has_word("SourceGraphic SourceAlpha", in) &&
+                !g_hash_table_contains(results ? results : own, in))
+                fl_set_attribute(step, inputs[i], NULL);
+        }
+        const char *result = fl_attribute(step, "result");
+        if (!results)
+            drop_unknown_inputs(step, own);
+        if (result)
+            g_hash_table_add(own, (gpointer)result);
+    }
+}
+
 /** Adds the step `name`, of the picture, to the start of a filter. */
 static xmlNode *add_input(xmlNode *filter, const char *kind, const char *name)
 {
@@ -125,6 +146,8 @@ static void mend_inputs(xmlNode *filter)
     const bool image = !mode && redirect(filter, "BackgroundImage", FL_NO_BACKGROUND);
     if (redirect(filter, "BackgroundAlpha", FL_NO_BACKGROUND) || image)
         fl_set_attribute(add_input(filter, "feFlood", FL_NO_BACKGROUND), "flood-opacity", "0");
+    if (!mode) // which is read later
+        drop_unknown_inputs(filter, NULL);
 }
 
 /** Makes a filter that only blends with the background the blend mode of its element. */
@@ -340,6 +363,43 @@ static int baseline_of(const xmlNode *node)
     return word ? height_of(word) : 0;
 }
 
+/** Collapses the white space of a text across its tspans, as browsers do; librsvg drops it at both
+ * ends of each. `last`: the character before, 0 without one. Returns: the last text that is left.
+ */
+static xmlNode *collapse_space(xmlNode *node, char *last)
+{
+    xmlNode *found = NULL;
+    for (xmlNode *child = node->children; child; child = child->next) {
+        if (child->type == XML_ELEMENT_NODE && xmlNodeGetSpacePreserve(child) == 1) {
+            *last = 'x';
+        } else if (child->type == XML_ELEMENT_NODE && fl_is_one_of(child, "tspan a textPath")) {
+            xmlNode *inner = collapse_space(child, last);
+            found = inner ? inner : found;
+        } else if (child->type == XML_TEXT_NODE || child->type == XML_CDATA_SECTION_NODE) {
+            char *to = (char *)child->content;
+            for (const char *s = to; *s; s++) {
+                const char letter = strchr(FL_CSS_SPACE, *s) ? ' ' : *s;
+                if (letter != ' ' || (*last && *last != ' '))
+                    *to++ = *last = letter;
+            }
+            *to = '\0';
+            found = *child->content ? child : found;
+        }
+    }
+    return found;
+}
+
+static void mend_space(xmlNode *text)
+{
+    char last = '\0';
+    if (xmlNodeGetSpacePreserve(text) == 1 || !xmlFirstElementChild(text))
+        return;
+    xmlNode *end = collapse_space(text, &last);
+    if (last == ' ')
+        end->content[xmlStrlen(end->content) - 1] = '\0';
+    xmlNodeSetSpacePreserve(text, 1);
+}
+
 /** librsvg lacks the baselines by which charts put labels at the height of a mark. */
 static void mend_baseline(xmlNode *text)
 {
@@ -353,6 +413,16 @@ static void mend_baseline(xmlNode *text)
 
 /* ---- words that librsvg does not know -------------------------------------------------------- */
 
+/** Returns: true if a browser reads a value of preserveAspectRatio. */
+static bool is_aspect(const char *text)
+{
+    static const char known[] = "none xMinYMin xMidYMin xMaxYMin xMinYMid xMidYMid xMaxYMid "
+                                "xMinYMax xMidYMax xMaxYMax";
+    g_auto(GStrv) word = fl_css_split(text, ' ');
+    return word[0] && fl_css_has_word(known, word[0]) &&
+           (!word[1] || (fl_css_has_word("meet slice", word[1]) && !word[2]));
+}
+
 static void mend_words(xmlNode *node)
 {
     static const char *const places[] = {"refX", "refY"};
@@ -361,6 +431,15 @@ static void mend_words(xmlNode *node)
         if (text && g_ascii_isalpha(*text)) // "center", for which librsvg drops all attributes
             fl_set_attribute(node, places[i], NULL);
     }
+    const char *turn = fl_is(node, "marker") ? fl_attribute(node, "orient") : NULL;
+    const char *aspect = fl_attribute(node, "preserveAspectRatio");
+    double degrees, box[4];
+    if (turn && fl_css_number(turn, &(FlCssUnits){0}, 360, &degrees))
+        fl_set_numbers(node, "orient", &degrees, 1); // librsvg lacks turns
+    if (aspect && !is_aspect(aspect)) // librsvg would hide the element, or know the word "defer"
+        fl_set_attribute(node, "preserveAspectRatio", NULL);
+    if (fl_attribute(node, "viewBox") && !fl_view_box(node, box))
+        fl_set_attribute(node, "viewBox", NULL);
     if (fl_is(node, "mask") && fl_is_set(node, "mask")) // which no browser applies
         fl_declare(node, "mask:none");
     g_autofree char *display = fl_property(node, "display");
@@ -392,9 +471,11 @@ static void mend(Mend *m, xmlNode *node)
         mend_gradient(node);
     } else if (fl_is_one_of(node, "polygon polyline"))
         mend_points(node);
-    else if (fl_is(node, "text") || fl_is(node, "tspan"))
+    else if (fl_is_one_of(node, "text tspan")) {
         mend_baseline(node);
-    else if (fl_is(node, "path"))
+        if (fl_is(node, "text"))
+            mend_space(node);
+    } else if (fl_is(node, "path"))
         mend_caps(node);
     for (xmlNode *child = node->children, *next; child; child = next) {
         next = child->next;
