@@ -12,7 +12,7 @@ number() { # number FILE OFFSET: four bytes, the largest first
 painted() { # painted SENTENCE FILE WIDTH HEIGHT ARGUMENT...: paints, and the picture has that size
     local sentence=$1 file=$2 width=$3 height=$4
     shift 4
-    timeout 300 "$program" -s "$style" --progress none "$@" >out 2>err && [ ! -s out ] &&
+    timeout 120 "$program" -s "$style" --progress none "$@" >out 2>err && [ ! -s out ] &&
         ! grep -q 'nan' err && [ "$(number "$file" 16)" = "$width" ] && [ "$(number "$file" 20)" = "$height" ]
     result $? "$sentence"
 }

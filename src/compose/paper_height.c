@@ -240,9 +240,15 @@ float fl_paper_fleck(const FlPaperPlace *place, float x, float y)
     return fl_clamp((n - .95f) * 4, 0, 1);
 }
 
-FlPaperHue fl_paper_hue(const FlPaperPlace *place, float x, float y)
+void fl_paper_hues(const FlPaperPlace *place, int x, int y, int n, FlPaperHue *hue)
 {
     const float px = 1 / (1.6f * place->scale);
-    return (FlPaperHue){4 * fl_noise(fl_key(place->seed, KEY_RED), x * px, y * px),
-                        6 * fl_noise(fl_key(place->seed, KEY_YELLOW), x * px, y * px)};
+    float red[FL_NOISE_ROW], yellow[FL_NOISE_ROW];
+    Stretch at = {.n = n};
+    for (int i = 0; i < n; i++)
+        at.x[i] = (float)(x + i) * px, at.y[i] = (float)y * px;
+    noise_at(place, KEY_RED, &at, red);
+    noise_at(place, KEY_YELLOW, &at, yellow);
+    for (int i = 0; i < n; i++)
+        hue[i] = (FlPaperHue){4 * red[i], 6 * yellow[i]};
 }

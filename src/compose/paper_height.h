@@ -69,7 +69,8 @@ typedef struct FlPaperHue {
     float red, yellow;
 } FlPaperHue;
 
-FlPaperHue fl_paper_hue(const FlPaperPlace *place, float x, float y);
+/** Those of n <= FL_NOISE_ROW neighbours in a row, from (x, y) on. */
+void fl_paper_hues(const FlPaperPlace *place, int x, int y, int n, FlPaperHue *hue);
 
 /** The share of a fleck at a place, 0..1. */
 float fl_paper_fleck(const FlPaperPlace *place, float x, float y);

@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/curves.h"
 #include "base/error.h"
+#include "base/noise.h"
 #include "base/page.h"
 #include "base/rng.h"
 #include "base/row_kernels.h"
@@ -48,11 +49,11 @@ static void surface_clear(Surface *surface)
 static bool surface_alloc(Surface *surface, GError **error)
 {
     const size_t n = fl_rect_pixels(surface->box), slow = fl_rect_pixels(surface->slow);
-    return (surface->fibres = fl_alloc(n, sizeof(float), "a sheet of paper", error)) &&
-           (surface->height = fl_alloc(n, sizeof(float), "a sheet of paper", error)) &&
-           (surface->smooth = fl_alloc(n, sizeof(float), "a sheet of paper", error)) &&
-           (surface->cloud = fl_alloc(slow, sizeof(float), "a sheet of paper", error)) &&
-           (surface->warmth = fl_alloc(slow, sizeof(float), "a sheet of paper", error));
+    return (surface->fibres = fl_alloc_unset(n, sizeof(float), "a sheet of paper", error)) &&
+           (surface->height = fl_alloc_unset(n, sizeof(float), "a sheet of paper", error)) &&
+           (surface->smooth = fl_alloc_unset(n, sizeof(float), "a sheet of paper", error)) &&
+           (surface->cloud = fl_alloc_unset(slow, sizeof(float), "a sheet of paper", error)) &&
+           (surface->warmth = fl_alloc_unset(slow, sizeof(float), "a sheet of paper", error));
 }
 
 static void fill_slow(Surface *surface)
@@ -160,7 +161,8 @@ static uint16_t factor_of(float share)
     return (uint16_t)(fl_clamp(1 + share, 0, 1.99f) * FL_PAPER_ONE + .5f);
 }
 
-static void fill_pixel(const Surface *surface, int x, int y, uint16_t factor[4], int8_t *tooth)
+static void fill_pixel(const Surface *surface, int x, int y, FlPaperHue hue, uint16_t factor[4],
+                       int8_t *tooth)
 {
     const FlPaperGrain *grain = surface->place.grain;
     const size_t at =
@@ -170,7 +172,6 @@ static void fill_pixel(const Surface *surface, int x, int y, uint16_t factor[4],
     const float light = (light_at(surface, surface->height + at) + .11f) / .82f;
     const float fleck = grain->flecks > 0 ? fl_paper_fleck(&surface->place, (float)x, (float)y) : 0;
     const float warm = .5f * slow_at(surface, surface->warmth, x, y) + .25f * fibre;
-    const FlPaperHue hue = fl_paper_hue(&surface->place, (float)x, (float)y);
     const float share = grain->sheet.relief * grain->relief * light + grain->cloud * cloud +
                         .5f * grain->streak * fibre - grain->flecks * fleck;
     const float fine = (height - surface->smooth[at]) / surface->fine.dev;
@@ -181,6 +182,18 @@ static void fill_pixel(const Surface *surface, int x, int y, uint16_t factor[4],
     *tooth = (int8_t)lrintf(fl_clamp(fine, -TOOTH_END, TOOTH_END) * FL_TOOTH_ONE);
 }
 
+static void fill_row(const Surface *surface, int y, FlPaperSheet *sheet)
+{
+    FlPaperHue hue[FL_NOISE_ROW];
+    for (int x = 0; x < sheet->width; x++) {
+        const size_t at = (size_t)y * (size_t)sheet->width + (size_t)x;
+        const int i = x % FL_NOISE_ROW;
+        if (i == 0)
+            fl_paper_hues(&surface->place, x, y, MIN(sheet->width - x, FL_NOISE_ROW), hue);
+        fill_pixel(surface, x, y, hue[i], sheet->factor + 4 * at, sheet->tooth + at);
+    }
+}
+
 static bool make_kind(FlPaperSheet *sheet, const FlPaperPlace *place, float relief, GError **error)
 {
     Surface surface = {
@@ -188,10 +201,7 @@ static bool make_kind(FlPaperSheet *sheet, const FlPaperPlace *place, float reli
     const bool made = surface_make(&surface, sheet, error);
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < (made ? sheet->height : 0); y++)
-        for (int x = 0; x < sheet->width; x++) {
-            const size_t at = (size_t)y * (size_t)sheet->width + (size_t)x;
-            fill_pixel(&surface, x, y, sheet->factor + 4 * at, sheet->tooth + at);
-        }
+        fill_row(&surface, y, sheet);
     surface_clear(&surface);
     return made;
 }
@@ -199,8 +209,9 @@ static bool make_kind(FlPaperSheet *sheet, const FlPaperPlace *place, float reli
 static bool sheet_alloc(FlPaperSheet *sheet, GError **error)
 {
     const size_t n = (size_t)sheet->width * (size_t)sheet->height;
-    return (sheet->factor = fl_alloc(4 * n, sizeof *sheet->factor, "a sheet of paper", error)) &&
-           (sheet->tooth = fl_alloc(n, 1, "a sheet of paper", error));
+    return (sheet->factor =
+                fl_alloc_unset(4 * n, sizeof *sheet->factor, "a sheet of paper", error)) &&
+           (sheet->tooth = fl_alloc_unset(n, 1, "a sheet of paper", error));
 }
 
 static bool fill_sheet(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, float scale,

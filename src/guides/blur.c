@@ -41,7 +41,7 @@ static void blur_columns(const float *rows, int width, int height, int y,
 
 bool fl_blur_with(float *plane, int width, int height, const FlBlurKernel *kernel, GError **error)
 {
-    g_autofree float *rows = fl_alloc((size_t)width * height, sizeof *rows, "a blur", error);
+    g_autofree float *rows = fl_alloc_unset((size_t)width * height, sizeof *rows, "a blur", error);
     if (!rows)
         return false;
 #pragma omp parallel

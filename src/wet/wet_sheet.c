@@ -11,21 +11,6 @@
 #define STRENGTH 0.9f     // of absorbances on the paper
 #define FRAYED_PX 14      // px of the page to which the sides of a stain break up, at most
 
-/** The grain of the paper, once for the film: the pictures have the sheet's. */
-static void find_grain(FlWetSheet *sheet)
-{
-    const int width = sheet->width, height = sheet->height;
-    const float px = sheet->px * (float)sheet->cell_px;
-#pragma omp parallel for schedule(static)
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            const float i = ((float)x + 0.5f) / px, j = ((float)y + 0.5f) / px;
-            FlPaperGrains *grain = &sheet->grain[(size_t)y * (size_t)width + (size_t)x];
-            grain->hollow = (uint8_t)(255 * fl_fibres_hollow(&sheet->fibres, i, j) + 0.5f);
-            grain->spot = (uint8_t)(255 * fl_fibres_spot(&sheet->fibres, i, j) + 0.5f);
-        }
-}
-
 bool fl_wet_sheet_init(FlWetSheet *sheet, GError **error)
 {
     const size_t n = fl_rect_pixels(sheet->page);
@@ -34,10 +19,7 @@ bool fl_wet_sheet_init(FlWetSheet *sheet, GError **error)
         return false;
     if (sheet->grain)
         return true;
-    if (!(sheet->grain = fl_alloc_unset(pixels, sizeof *sheet->grain, "paper", error)))
-        return false;
-    find_grain(sheet);
-    return true;
+    return (sheet->grain = fl_alloc_scratch(pixels, sizeof *sheet->grain, "paper", error)) != NULL;
 }
 
 void fl_wet_sheet_begin(FlWetSheet *sheet)
@@ -61,6 +43,22 @@ static int wrapped(double x, int size)
     return rest < 0 ? rest + size : rest;
 }
 
+/** The grain at a px of the paper, found where it is asked for: most of a page stays dry. */
+static FlPaperGrains find_grain(const FlWetSheet *sheet, int x, int y)
+{
+    uint16_t *known = &sheet->grain[(size_t)y * (size_t)sheet->width + (size_t)x];
+    uint16_t grain = __atomic_load_n(known, __ATOMIC_RELAXED);
+    if (grain == 0) {
+        const float px = sheet->px * (float)sheet->cell_px;
+        const float i = ((float)x + 0.5f) / px, j = ((float)y + 0.5f) / px;
+        const int hollow = (int)(255 * fl_fibres_hollow(&sheet->fibres, i, j) + 0.5f);
+        const int spot = (int)(255 * fl_fibres_spot(&sheet->fibres, i, j) + 0.5f);
+        grain = (uint16_t)(hollow << 8 | spot);
+        __atomic_store_n(known, grain, __ATOMIC_RELAXED);
+    }
+    return (FlPaperGrains){(uint8_t)(grain >> 8), (uint8_t)grain};
+}
+
 /** The grain at a px of the cells, which moves and turns with the paper. */
 static FlPaperGrains grain_at(const FlWetSheet *sheet, int x, int y)
 {
@@ -68,7 +66,7 @@ static FlPaperGrains grain_at(const FlWetSheet *sheet, int x, int y)
     const double c = sheet->cell_px;
     const int column = wrapped(place->xx * x + place->xy * y + c * place->x0, sheet->width);
     const int row = wrapped(place->yx * x + place->yy * y + c * place->y0, sheet->height);
-    return sheet->grain[(size_t)row * (size_t)sheet->width + (size_t)column];
+    return find_grain(sheet, column, row);
 }
 
 FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t at)

@@ -52,7 +52,7 @@ typedef struct FlWetSheet {
     float stain_time;
     FlFibres fibres;
     FlWetCell *cell;
-    FlPaperGrains *grain; // of each px of the pictures
+    uint16_t *grain;      // of each px of the paper, kept for the film; 0: not found yet
     int shift_x, shift_y; // px by which the cells lie beside their place
     FlRect wet;           // beyond it all cells are dry
 } FlWetSheet;
