@@ -187,13 +187,20 @@ mkdir grounds
 for i in 1 2 3; do
     cat >grounds/w_$i.svg <<END
 <svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 96 96"><circle cx="20" cy="8" r="8" fill="#ee8"/>
-<path d="M-9 10h114v20h-114z" fill="#cde"/><path d="M-9 60h114v50h-114z" fill="#354"/>
+<path d="M-9 10h114v20h-114z" fill="#cde"/><path d="M-9 60l114 20v30h-114z" fill="#354"/>
 <path d="M$((5 + 15 * i)) 66h16v20h-16z" fill="#d33"/></svg>
 END
 done
 "$program" grounds -s 01 -W 192 --detail draft --stain 1 -o 'grounds/o/%d.png' --layers 'grounds/o/{region}_%d.png' -q >out 2>err &&
     [ -s grounds/o/paper_stain-3_3.png ] && [ ! -e grounds/o/paper_stain-2_3.png ]
 result $? 'the second ground above a figure keeps the number of its stain'
+# visible FILE W:H:X:Y: the pixels of a part that are not transparent
+visible() {
+    ffmpeg -v error -i "$1" -vf "crop=$2,extractplanes=a" -f rawvideo - </dev/null | tr -d '\0' | wc -c
+}
+[ "$(visible grounds/o/paper_stain-3_3.png 20:4:80:132)" = 0 ] &&
+    [ "$(visible grounds/o/paper_stain-3_3.png 20:12:80:150)" -gt 100 ]
+result $? 'and ends where that ground does'
 cp -r a b
 refuses 'a frame that exists is not painted over' 1 'a/w_1.png: already exists; *' whole -s 01 -o 'a/w_%d.png'
 refuses 'what exists is found before anything is read' 1 'a/w_1.png: already exists; *' broken -s 01 -o 'a/w_%d.png'

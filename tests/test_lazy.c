@@ -229,6 +229,32 @@ static void a_limit_that_moves_slowly_does_not_pop(void)
     g_assert_cmpint(most, <, 50);
 }
 
+/* A level line of 56 px, and of half its width to both sides of y. */
+static void draw_line(Film *film, double half_width, double y)
+{
+    for (int p = 0; p < PIXELS; p++) {
+        const double inside = MIN(28 - fabs(p % SIDE - 35.5), half_width - fabs(p / SIDE - y));
+        film->guides.distance[p] = (float)inside;
+        film->guides.mask[p] = (uint8_t)lrint(255 * CLAMP(inside + .5, 0, 1));
+    }
+}
+
+/* What rests keeps its picture, limits and all. */
+static void what_is_held_keeps_its_limits(void)
+{
+    g_auto(Film) film;
+    film_init(&film, cut_out(true), "lazyfluids-steady", "1");
+    film.params->rest = true;
+    draw_line(&film, 9, 35.5);
+    turn_by(&film, 0);
+    paint(&film, 1);
+    g_autofree uint8_t *rgb = g_memdup2(film.rgb, sizeof film.rgb);
+    g_autofree uint8_t *alpha = g_memdup2(film.alpha, sizeof film.alpha);
+    paint(&film, 1);
+    g_assert_cmpmem(film.rgb, sizeof film.rgb, rgb, sizeof film.rgb);
+    g_assert_cmpmem(film.alpha, sizeof film.alpha, alpha, sizeof film.alpha);
+}
+
 /* A ribbon's faint rim is shown by the alpha of the drawing: it has the colour of the fluid. */
 static void a_ribbon_has_no_grey_rim(void)
 {
@@ -239,11 +265,7 @@ static void a_ribbon_has_no_grey_rim(void)
             style->rgb[3 * p + c] = (uint8_t)(style->paper[c] * (255 - style->mask[p]) / 255);
     film_init(&film, style, "lazyfluids-steady", "1");
     double off = 0, n = 0;
-    for (int p = 0; p < PIXELS; p++) {
-        const double inside = MIN(28 - fabs(p % SIDE - 35.5), 3 - fabs(p / SIDE - 35.5));
-        film.guides.distance[p] = (float)inside;
-        film.guides.mask[p] = (uint8_t)lrint(255 * CLAMP(inside + .5, 0, 1));
-    }
+    draw_line(&film, 3, 35.5);
     paint(&film, 2);
     for (int p = 0; p < PIXELS; p++)
         if (film.guides.mask[p] == 255)
@@ -258,11 +280,7 @@ static void a_ribbon_frays_less_than_a_body(void)
     g_auto(Film) film;
     film_init(&film, cut_out(true), "lazyfluids-steady", "1");
     double off = 0, n = 0;
-    for (int p = 0; p < PIXELS; p++) {
-        const double inside = MIN(28 - fabs(p % SIDE - 35.5), 3 - fabs(p / SIDE - 35.5));
-        film.guides.distance[p] = (float)inside;
-        film.guides.mask[p] = (uint8_t)lrint(255 * CLAMP(inside + .5, 0, 1));
-    }
+    draw_line(&film, 3, 35.5);
     paint(&film, 2);
     for (int p = 0; p < PIXELS; p++)
         if (fabs(film.guides.distance[p]) < 2)
@@ -279,11 +297,7 @@ static void a_thin_line_is_whole(void)
     int least = 255;
     for (int frame = 0; frame < 4; frame++) {
         const double middle = 35.5 + frame % 2;
-        for (int p = 0; p < PIXELS; p++) {
-            const double along = 28 - fabs(p % SIDE - 35.5), across = 1.5 - fabs(p / SIDE - middle);
-            film.guides.distance[p] = (float)MIN(along, across);
-            film.guides.mask[p] = (uint8_t)lrint(255 * CLAMP(MIN(along, across) + .5, 0, 1));
-        }
+        draw_line(&film, 1.5, middle);
         paint(&film, 1);
         for (int x = 12; x < SIDE - 12; x++)
             least = MIN(least, film.alpha[(int)middle * SIDE + x]);
@@ -676,6 +690,7 @@ int main(int argc, char **argv)
     g_test_add_func("/lazy/fluid-ends-without-steps", fluid_ends_without_steps);
     g_test_add_func("/lazy/a-limit-that-moves-slowly-does-not-pop",
                     a_limit_that_moves_slowly_does_not_pop);
+    g_test_add_func("/lazy/what-is-held-keeps-its-limits", what_is_held_keeps_its_limits);
     g_test_add_func("/lazy/a-ribbon-has-no-grey-rim", a_ribbon_has_no_grey_rim);
     g_test_add_func("/lazy/a-ribbon-frays-less-than-a-body", a_ribbon_frays_less_than_a_body);
     g_test_add_func("/lazy/a-trimmed-cut-out-paints-nothing-far-outside",

@@ -352,6 +352,25 @@ static void wet_paint_settles_and_dry_paint_catches(void)
     g_assert_true(flat[0] == 1024 && flat[1] == 5 && flat[2] == -1);
 }
 
+/* The ln of the factor by which wet paint of an amount gathers in a hollow. */
+static double gathered(int amount)
+{
+    int8_t height = -2 * FL_TOOTH_ONE;
+    int16_t amounts[1] = {(int16_t)amount};
+    fl_granulate(.14f, (FlTooth){&height, 1}, &(FlArea){{0, 0, 1, 1}, NULL}, amounts, NULL);
+    return log((double)amounts[0] / amount);
+}
+
+/* A thin film has little pigment to part with, and a deep one covers the paper. */
+static void thin_and_deep_paint_granulate_less(void)
+{
+    const double thin = gathered(120), middle = gathered(512), deep = gathered(3072);
+    g_test_message("thin %.3f, middle %.3f, deep %.3f", thin, middle, deep);
+    g_assert_cmpfloat(middle, >, .25);
+    g_assert_cmpfloat(thin, <, .6 * middle);
+    g_assert_cmpfloat(deep, <, .4 * middle);
+}
+
 /* Of two pigments the heavy one granulates and parts from the other, and the one that stains does
  * not. */
 static void heavy_pigments_settle(void)
@@ -365,6 +384,7 @@ static void heavy_pigments_settle(void)
     g_assert_cmpint(amounts[0] - amounts[1], >, 4 * (amounts[2] - amounts[3]));
     g_assert_true(play[0] > 70 && play[1] < 58);
     g_assert_cmpint(play[0] - 64, >, 4 * (play[2] + 64));
+    g_assert_true(play[2] > -64 - 10 && play[2] < -64 + 15);
     const int8_t before = play[0];
     fl_granulate(-.14f, tooth, &area, amounts, play); // dry paint does not part
     g_assert_cmpint(play[0], ==, before);
@@ -425,6 +445,8 @@ int main(int argc, char **argv)
     g_test_add_func("/paper/wet-paint-settles-and-dry-paint-catches",
                     wet_paint_settles_and_dry_paint_catches);
     g_test_add_func("/paper/heavy-pigments-settle", heavy_pigments_settle);
+    g_test_add_func("/paper/thin-and-deep-paint-granulate-less",
+                    thin_and_deep_paint_granulate_less);
     g_test_add_func("/paper/noise-of-a-row-is-that-of-its-places",
                     noise_of_a_row_is_that_of_its_places);
     g_test_add_func("/paper/noise-is-a-function-of-place-alone",

@@ -5,7 +5,7 @@
 #include "compose/gaps.h"
 #include "compose/ink.h"
 #include "compose/pigments.h"
-#include "compose/wash.h"
+#include "compose/wash_field.h"
 #include "scratch.h"
 #include "threads.h"
 #include <math.h>
@@ -548,9 +548,11 @@ static void touching_shapes_of_one_fill_are_one_wash(void)
     g_autoptr(FlDrawing) other = open_film(folder_of_two, two);
     g_assert_cmpint(fl_drawing_regions(same), ==, 2);
     g_autofree Tones *a = lay_frame(same, 0, &plain), *b = lay_frame(other, 0, &plain);
-    g_test_message("step of ln: %.3f within a fill, %.3f between fills", seam_at(a, 200),
-                   seam_at(b, 200));
-    g_assert_cmpfloat(seam_at(a, 200), <, .03); // less than 1 L*
+    g_test_message("step of ln: %.3f within a fill, %.3f between fills; at the seam %.3f, %.3f",
+                   step_at(a, 200), step_at(b, 200), seam_at(a, 200), seam_at(b, 200));
+    g_assert_cmpfloat(step_at(a, 200), <, .06);
+    g_assert_cmpfloat(step_at(b, 200), >, .1);
+    g_assert_cmpfloat(seam_at(a, 200), <, .03);
     g_assert_cmpfloat(seam_at(b, 200), >, .1);
 }
 
@@ -626,15 +628,17 @@ static void fronts_have_teeth(void)
         float away;
         bool uneven;
     } rows[] = {{10, true}, {-9, false}, {60, false}};
-    for (size_t k = 0; k < G_N_ELEMENTS(rows); k++) {
+    for (size_t k = 0; k < 2 * G_N_ELEMENTS(rows); k++) {
+        const int passes = k % 2; // whose hairs are faint where the brush is wet
         Row row = {0};
         for (int i = 0; i < ROW; i++) {
-            row.values[FL_WASH_FRONT][i] = rows[k].away, row.values[FL_WASH_FRONTS][i] = 1;
-            row.values[FL_WASH_X][i] = (float)i;
+            row.values[FL_WASH_FRONT][i] = rows[k / 2].away, row.values[FL_WASH_FRONTS][i] = 1;
+            row.values[FL_WASH_LINES][i] = (float)passes, row.values[FL_WASH_X][i] = (float)i;
         }
         find_row(&row);
-        g_test_message("row %zu: step %.3f", k, most_step(&row));
-        g_assert_true(rows[k].uneven ? most_step(&row) > .03f : most_step(&row) < .01f);
+        const float step = most_step(&row), least = passes ? .02f : .01f;
+        g_test_message("row %zu: step %.3f", k / 2, (double)step);
+        g_assert_true(rows[k / 2].uneven ? step > .03f : step < least);
     }
 }
 
@@ -697,6 +701,40 @@ static void hairs_of_a_dry_brush_draw_streaks(void)
     g_assert_cmpfloat(wet, <, .5f * streaks); // faint ones
 }
 
+/* Along the rows and down the columns of 1600 px of a wash, the brush turns from wet to dry or back
+ * about every 130 px: once in a stroke. */
+static void strokes_stay_dry_for_their_length(void)
+{
+    enum { POINTS = 200, ALL = POINTS * POINTS, STEP = 8 };
+    g_autofree float *memory = g_new0(float, (FL_WASH_PLANES + FL_WASH_ROOMS + 4) * ALL);
+    float *mask = memory + (FL_WASH_PLANES + FL_WASH_ROOMS) * ALL;
+    FlWash wash = {
+        .key = 7, .brush_px = 50, .along = {1}, .step = STEP, .width = POINTS, .height = POINTS};
+    FlWashPart part = {.anchor = {.cosine = 1}};
+    FlWashField field = {.wash = &wash,
+                         .input = &(FlComposeInput){.paper_px = 1},
+                         .part = &part,
+                         .n_parts = 1,
+                         .mask = mask,
+                         .turned = mask + ALL};
+    for (int k = 0; k < FL_WASH_PLANES; k++)
+        wash.plane[k] = memory + k * ALL;
+    for (int k = 0; k < FL_WASH_ROOMS; k++)
+        field.room[k] = memory + (FL_WASH_PLANES + k) * ALL;
+    for (int i = 0; i < ALL; i++)
+        mask[i] = 1;
+    fl_field_fill_noise(&field);
+    const float *dry = wash.plane[FL_WASH_DRY];
+    int turns = 0;
+    for (int i = 0; i < ALL; i++) {
+        turns += i % POINTS > 0 && (dry[i] > 0) != (dry[i - 1] > 0);
+        turns += i >= POINTS && (dry[i] > 0) != (dry[i - POINTS] > 0);
+    }
+    const double length = 2. * STEP * ALL / turns;
+    g_test_message("the brush turns dry or wet every %.0f px", length);
+    g_assert_true(length > 110 && length < 160);
+}
+
 /* Parts of a fill that move apart: no line where one's wash passes into the other's. */
 static void parts_that_move_apart_are_mixed(void)
 {
@@ -709,7 +747,8 @@ static void parts_that_move_apart_are_mixed(void)
     g_autoptr(Scratch) folder = scratch_make();
     g_autoptr(FlDrawing) drawing = open_film(folder, frames);
     g_autofree Tones *tones = lay_frame(drawing, 1, &plain);
-    g_test_message("step of ln: %.3f", seam_at(tones, 200));
+    g_test_message("step of ln: %.3f, at the seam %.3f", step_at(tones, 200), seam_at(tones, 200));
+    g_assert_cmpfloat(step_at(tones, 200), <, .05);
     g_assert_cmpfloat(seam_at(tones, 200), <, .03);
 }
 
@@ -1007,6 +1046,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/passes-are-soft-and-slopes-ragged", passes_are_soft_and_slopes_ragged);
     g_test_add_func("/wash/dry-passes-have-ragged-edges", dry_passes_have_ragged_edges);
     g_test_add_func("/wash/hairs-of-a-dry-brush-draw-streaks", hairs_of_a_dry_brush_draw_streaks);
+    g_test_add_func("/wash/strokes-stay-dry-for-their-length", strokes_stay_dry_for_their_length);
     g_test_add_func("/wash/parts-that-move-apart-are-mixed", parts_that_move_apart_are_mixed);
     g_test_add_func("/wash/dots-and-lines-have-none", dots_and_lines_have_none);
     g_test_add_func("/wash/a-calm-wash-keeps-some-of-the-rim", a_calm_wash_keeps_some_of_the_rim);

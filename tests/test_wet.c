@@ -362,24 +362,33 @@ static void test_fingers(void)
     scene_free(scene);
 }
 
+/* A stroke to the right. */
 static void draw_stroke(int end, uint8_t *mask)
 {
     for (int p = 0; p < PIXELS; p++)
         mask[p] = p % SIDE >= 20 && p % SIDE < end && abs(p / SIDE - 100) < 15 ? 255 : 0;
 }
 
+/* The edge of a stroke as far as `end`, which advances there by 20 px a frame. */
+static Scene *scene_of_stroke(int end, FlMovingEdge *edge)
+{
+    Scene *scene = scene_new();
+    draw_stroke(end, scene->now);
+    g_assert_true(fl_moving_edge_look(edge, &scene->shape, NULL));
+    for (int i = 0; i < edge->n; i++)
+        edge->point[i].speed = edge->point[i].nx > 0.5f ? 20 : 0;
+    scene->shape.motion = NULL;
+    scene->shape.distance_before = edge->distance;
+    return scene;
+}
+
 /* An edge that goes back beyond the middle of what was there goes back all the same. */
 static void test_retreat(void)
 {
-    Scene *scene = scene_new();
     g_auto(FlMovingEdge) before = {0};
     g_auto(FlMovingEdge) edge = {0};
-    draw_stroke(120, scene->now);
-    g_assert_true(fl_moving_edge_look(&before, &scene->shape, NULL));
-    for (int p = 0; p < 105 * SIDE; p++)
-        scene->now[p] = 0;
-    scene->shape.motion = NULL;
-    scene->shape.distance_before = before.distance;
+    Scene *scene = scene_of_stroke(120, &before);
+    memset(scene->now, 0, 105 * SIDE);
     g_assert_true(fl_moving_edge_init(&edge, &scene->shape, &before, NULL));
     int n = 0;
     for (int i = 0; i < edge.n; i++) {
@@ -396,16 +405,10 @@ static void test_retreat(void)
 /* A stroke that grows at its end advances there, and not at its new sides. */
 static void test_stroke(void)
 {
-    Scene *scene = scene_new();
     g_auto(FlMovingEdge) before = {0};
     g_auto(FlMovingEdge) edge = {0};
-    draw_stroke(100, scene->now);
-    g_assert_true(fl_moving_edge_look(&before, &scene->shape, NULL));
-    for (int i = 0; i < before.n; i++)
-        before.point[i].speed = before.point[i].nx > 0.5f ? 20 : 0;
+    Scene *scene = scene_of_stroke(100, &before);
     draw_stroke(120, scene->now);
-    scene->shape.motion = NULL;
-    scene->shape.distance_before = before.distance;
     g_assert_true(fl_moving_edge_init(&edge, &scene->shape, &before, NULL));
     int sides = 0, ends = 0;
     for (int i = 0; i < edge.n; i++) {

@@ -17,7 +17,7 @@ typedef enum FlWashPlane {
     FL_WASH_X,      // place in the shape, px of the page, drawn out across fronts
     FL_WASH_Y,
     FL_WASH_ROUGH, // strength of ragged ends, ln of the amount
-    FL_WASH_CALM,  // share of the recording's unevenness that is lost, 0..1; at first noise
+    FL_WASH_CALM,  // share of the recording's unevenness that is lost, 0..1
     FL_WASH_PLANES,
 } FlWashPlane;
 

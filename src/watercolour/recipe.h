@@ -75,8 +75,8 @@ typedef struct FlRecipe {
     FlStyle *style;            // all that style.ini will say; no frames
     int width, height, frames; // px
     int oversample;            // cells per px, 1..3
-    int steps[2],
-        warm_up; // simulated steps: before the second and the last frame; before the first
+    int warm_up;               // simulated steps before the first frame
+    int steps[2];              // the same from the first frame to the second, and before the last
     int seed;
     float mask_threshold; // least thickness of paint
     float mask_blur;      // radius over which the thickness is averaged, px
