@@ -3,13 +3,15 @@
 # usage: sanitize.sh address|thread|fuzz|memcheck|analysers|bare BUILD-DIR, in the source folder; each has a
 # folder of its own, but memcheck and analysers may share the one of an ordinary build.
 #
-# address: the whole suite, AddressSanitizer, LeakSanitizer and UndefinedBehaviorSanitizer.
+# address: the suite but for what tests/meson.build leaves out, with AddressSanitizer, LeakSanitizer and
+#   UndefinedBehaviorSanitizer.
 # thread: what uses threads, ThreadSanitizer with clang. gcc's reports false races in OpenMP; Archer
 #   tells clang's what OpenMP orders, and tsan_glib.c what GLib does. GLib's own slices, handed from
 #   a thread that has ended to the next, would be taken for shared.
 #   It also fails if clang warns of anything; .ci/run builds with gcc so.
 # fuzz: every target of tests/fuzz for 20 seconds, with clang and both of address.
-# bare: every optional feature off; what is left is built without warnings, and paints.
+# bare: every optional feature off; what is left is built without warnings, and what would use
+#   a feature does without.
 # memcheck: a short render in valgrind.
 # analysers: cppcheck and clang-tidy; tests/cppcheck.supp and .clang-tidy say what is left out.
 set -eu
@@ -18,6 +20,8 @@ build=$2
 source=$PWD
 export OMP_WAIT_POLICY=passive FLUIDY_CACHE=off FLUIDY_FIXTURES=$source/fixtures
 
+# What is made by other programs is tried in the ordinary build.
+plain=(-Dapi=disabled -Dpython=disabled)
 make_build() {
     [ -f "$build/build.ninja" ] || meson setup "$build" -Dbuildtype=debugoptimized "$@"
 }
@@ -29,23 +33,24 @@ render=("$build/src/cli/fluidy-svg" -s fixtures/style-small -W 64 -f 1-2 -j 3 --
 case $what in
 address)
     # lines are enough to say where; it builds a fifth sooner
-    make_build -Db_sanitize=address,undefined -Db_lundef=false -Ddebug=false -Dc_args=-g1
-    ninja -C "$build"
+    make_build -Db_sanitize=address,undefined -Db_lundef=false -Ddebug=false -Dc_args=-g1 "${plain[@]}"
     export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
     export LSAN_OPTIONS=suppressions=$source/tests/lsan.supp:print_suppressions=0
-    # a library with a sanitizer is not for programs without: no test of pkg-config
-    meson test -C "$build" --no-rebuild --no-suite headers --timeout-multiplier 6 --print-errorlogs
+    # Meson builds what these tests need. A library with a sanitizer is not for programs without: no
+    # test of pkg-config
+    meson test -C "$build" --no-suite headers --timeout-multiplier 6 --print-errorlogs
     ;;
 bare)
     make_build --werror -Dopenmp=disabled -Dsimd=disabled -Dexr=disabled -Dora=disabled -Dwebp=disabled -Dsandbox=disabled -Dserve=disabled -Dman=disabled
-    ninja -C "$build"
-    meson test -C "$build" --no-rebuild --suite unit --suite kernels --print-errorlogs
+    ninja -C "$build" src/cli/fluidy-svg src/cli/fluidy-style
+    meson test -C "$build" --print-errorlogs kernels child distance film_object formats options paper render \
+        sandbox schedule sink synth synth_cases task workers
     ;;
 thread)
     export CC=clang
-    make_build --werror -Db_sanitize=thread -Db_lundef=false
+    make_build --werror -Db_sanitize=thread -Db_lundef=false "${plain[@]}"
     programs=(distance film guides holds layers synth synth_cases watercolour)
-    ninja -C "$build" # all of it, for clang's warnings
+    ninja -C "$build" src/cli/fluidy-svg src/cli/fluidy-style "${programs[@]/#/tests/test_}"
     clang -D_GNU_SOURCE -shared -fPIC -Wl,--unresolved-symbols=ignore-all \
         $(pkg-config --cflags glib-2.0) tests/tsan_glib.c -o "$build/tsan_glib.so"
     archer=$(clang -print-file-name=libarcher.so)
@@ -64,7 +69,7 @@ thread)
     ;;
 fuzz)
     export CC=clang
-    make_build -Dfuzz=enabled -Dman=disabled -Db_sanitize=address,undefined -Db_lundef=false
+    make_build "${plain[@]}" -Dfuzz=enabled -Db_sanitize=address,undefined -Db_lundef=false
     ninja -C "$build" fuzzers
     tests/fuzz.sh "$build" 20
     ;;
@@ -75,7 +80,7 @@ memcheck)
     ;;
 analysers)
     make_build
-    cppcheck -q --std=c11 --enable=warning,performance,portability --library=gtk \
+    cppcheck -q -j "$(nproc)" --std=c11 --enable=warning,performance,portability --library=gtk \
         --suppressions-list=tests/cppcheck.supp '-DG_GNUC_PRINTF(a,b)=' -I include -I src \
         -i src/synth/arm --error-exitcode=66 src
     # paths through a function end after 60,000 states instead of 225,000, in two fifths of the time
