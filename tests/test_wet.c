@@ -552,9 +552,10 @@ static double blue_at(const FlPicture *picture, int x, int y)
     return mean_at(picture, x, y, 2) - mean_at(picture, x, y, 0);
 }
 
-/* By how much a red shape that has left changes a channel of what it was seen on, from x to
- * x + width, which comes up by `rocks` px in every other frame; below it something sinks. */
-static double change_on(const char *fill, int x, int width, int rocks, int sinks, int channel)
+/* By how much a shape that has left changes a channel of what it was seen on, from x to x + width,
+ * which comes up by `rocks` px in every other frame; below it something sinks. */
+static double change_on(const char *figure, const char *fill, int x, int width, int rocks,
+                        int sinks, int channel)
 {
     double mean[2];
     for (int k = 0; k < 2; k++) {
@@ -562,9 +563,9 @@ static double change_on(const char *fill, int x, int width, int rocks, int sinks
         for (int f = 1; f <= 8; f++)
             frames[f - 1] = g_strdup_printf("<path d='M22 %dh16v80h-16z' fill='#c93'/>"
                                             "<path d='M%d %dh%dv36h%dz' fill='%s'/>"
-                                            "<path d='M%d 68h20v20h-20z' fill='#d33'/>",
+                                            "<path d='M%d 68h20v20h-20z' fill='%s'/>",
                                             9 + sinks * f, x, 60 - rocks * (f % 2), width, -width,
-                                            fill, f < 7 ? 12 + 6 * f : 900);
+                                            fill, f < 7 ? 12 + 6 * f : 900, figure);
         FlPicture *picture = last_of(frames, 96, k ? "1" : "0", NULL);
         mean[k] = mean_at(picture, 30, 78, channel);
         fl_picture_free(picture);
@@ -572,18 +573,20 @@ static double change_on(const char *fill, int x, int width, int rocks, int sinks
     return mean[1] - mean[0];
 }
 
-/* What spans the page and rests is ground, which stains darken; dark ground they thin. A face,
+/* What spans the page and rests is ground, which stains darken; dark ground they thin, and white
+ * paint as well. A face,
  * water that moves, and hills that hide what moves, are none. */
 static void test_ground(void)
 {
-    const double pale = change_on("#cdc", -9, 114, 0, 0, 2),
-                 dark = change_on("#112", -9, 114, 0, 0, 0);
+    const double pale = change_on("#d33", "#cdc", -9, 114, 0, 0, 2),
+                 dark = change_on("#d33", "#112", -9, 114, 0, 0, 0);
     g_test_message("blue of pale ground %+.1f, red of dark ground %+.1f", pale, dark);
     g_assert_cmpfloat(pale, <, -4);
     g_assert_cmpfloat(dark, >, 2);
-    g_assert_cmpfloat(change_on("#cdc", 2, 92, 0, 0, 2), ==, 0);
-    g_assert_cmpfloat(fabs(change_on("#cdc", -9, 114, 2, 0, 2)), <, 0.5);
-    g_assert_cmpfloat(fabs(change_on("#cdc", -9, 114, 0, 7, 2)), <, 0.5);
+    g_assert_cmpfloat(change_on("#fff", "#112", -9, 114, 0, 0, 0), >, 1);
+    g_assert_cmpfloat(change_on("#d33", "#cdc", 2, 92, 0, 0, 2), ==, 0);
+    g_assert_cmpfloat(fabs(change_on("#d33", "#cdc", -9, 114, 2, 0, 2)), <, 0.5);
+    g_assert_cmpfloat(fabs(change_on("#d33", "#cdc", -9, 114, 0, 7, 2)), <, 0.5);
 }
 
 /* A stain at the top of the page turns with the ground, clockwise by 32 degrees. */
@@ -603,6 +606,29 @@ static void test_camera(void)
     g_assert_cmpfloat(turned, >, left + 3);
     g_assert_cmpfloat(turned, >, back + 3);
     fl_picture_free(picture);
+}
+
+/* A house that goes with a meadow of a third of the page, before hills that go half as far, leaves
+ * nothing in the sky; one that goes over the meadow alone leaves a stain. */
+static void test_pan(void)
+{
+    double blue[2][2];
+    for (int k = 0; k < 4; k++) {
+        g_auto(GStrv) frames = g_new0(char *, 9);
+        for (int f = 1; f <= 8; f++)
+            frames[f - 1] =
+                g_strdup_printf("<path d='M%d 40h200v40h-200z' fill='#9ab'/>"
+                                "<path d='M%d 62h200v40h-200z' fill='#9b6'/><path d='M%d "
+                                "10h20v20h-20z' fill='#a53'/>",
+                                -40 + (k & 1) * 3 * f, -60 + (k & 1) * 6 * f, 10 + 6 * f);
+        FlPicture *picture = last_of(frames, 96, k & 2 ? "1" : "0", NULL);
+        blue[k >> 1][k & 1] = mean_at(picture, 50, 20, 2);
+        fl_picture_free(picture);
+    }
+    g_test_message("blue of the sky behind a house %.1f, of one that a camera passes %.1f of %.1f",
+                   blue[1][0], blue[1][1], blue[0][0]);
+    g_assert_cmpfloat(blue[1][0], <, blue[0][0] - 4);
+    g_assert_cmpfloat(fabs(blue[1][1] - blue[0][1]), <, 0.5);
 }
 
 enum { WIDE = 360 }; // px, of a page whose cells have 2
@@ -888,6 +914,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/marks-fade-until-none-is-left", test_dries);
     g_test_add_func("/wet/marks-and-grain-move-with-the-paper", test_moved);
     g_test_add_func("/wet/a-stain-turns-with-the-ground", test_camera);
+    g_test_add_func("/wet/what-a-camera-passes-leaves-nothing", test_pan);
     g_test_add_func("/wet/ground-is-stained-and-a-face-is-not", test_ground);
     g_test_add_func("/wet/a-stain-stays-in-place-between-cells", test_part_of_a_cell);
     g_test_add_func("/wet/the-paper-turns-with-the-camera", test_turned);

@@ -520,11 +520,8 @@ bool fl_plan_choose_styles(FlPlan *plan, GError **error)
 {
     FlShapes *shapes = &plan->shapes;
     const int n_regions = fl_drawing_regions(shapes->drawing);
-    g_free(shapes->ground);
-    shapes->ground = g_new0(bool, MAX(n_regions, 1));
-    for (int r = 0; r < n_regions; r++)
-        shapes->ground[r] = fl_drawing_region(shapes->drawing, r)->stays ||
-                            fl_shapes_share_of_page(shapes, r) > FL_GROUND_SHARE;
+    if (!fl_shapes_find_ground(shapes, plan->options.camera, error))
+        return false;
     shapes->surround =
         fl_surround_new(n_regions, shapes->n_frames, shapes->width, shapes->height, error);
     shapes->masks = shapes->surround ? fl_surround_masks(shapes->surround) : NULL;

@@ -79,6 +79,7 @@ typedef struct FlShapes {
     FlRegionHand *hands; // by region: what draws it where it is not painted
     FlEdge *edge_limits; // by region
     bool *ground;        // by region: it is the ground on which the others, figures, move
+    int camera;          // the region that the paper moves with; -1: the paper stays
     bool *seen;          // by region: it is not painted, or something of it shows; NULL: not known
     bool frames_alone;   // paint is used for frames only, so that hidden regions need none: layers,
                          // which can be moved apart, show them
@@ -98,7 +99,9 @@ typedef struct FlShapes {
 /** The share of the page that a region has on average of the film's frames. */
 double fl_shapes_share_of_page(const FlShapes *shapes, int region);
 
-#define FL_GROUND_SHARE 0.4 // of the page: a larger region is ground
+/** Finds the ground and the camera. camera: a region's name, none or auto; NULL: auto.
+ * FL_ERROR_USAGE for an unknown name. */
+bool fl_shapes_find_ground(FlShapes *shapes, const char *camera, GError **error);
 
 /** True if frames are so large that pictures wait packed and free memory returns to the system
  * after each stage. On small pages, faulting it in again would take a tenth of a draft. */

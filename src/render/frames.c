@@ -215,8 +215,7 @@ static FlWet *new_wet(const FlFrames *frames, const FlShapes *shapes, FlWet *bef
     const FlWetOptions options = {.paper = {paper[0], paper[1], paper[2]},
                                   .seed = o->paper_seed,
                                   .stain_time = o->stain_time * (o->fps > 0 ? o->fps : 24) / 24,
-                                  .overrun = o->overrun,
-                                  .camera = o->camera};
+                                  .overrun = o->overrun};
     return fl_wet_new(shapes, &options, before, fl_motion_source_whole, motion, error);
 }
 

@@ -333,18 +333,6 @@ static bool load_paint(FlPainter *painter, int frame, GError **error)
     return file && fl_paint_file_load(&painter->result, file, error);
 }
 
-/* The largest ground; -1: there is none. */
-static int ground_of(const FlShapes *shapes)
-{
-    int ground = -1;
-    for (int r = 0; r < fl_drawing_regions(shapes->drawing); r++)
-        if (shapes->ground[r] &&
-            (ground < 0 || fl_drawing_region(shapes->drawing, r)->area_px >
-                               fl_drawing_region(shapes->drawing, ground)->area_px))
-            ground = r;
-    return ground;
-}
-
 bool fl_painter_frame(FlPainter *painter, int frame, GError **error)
 {
     const gint64 start = g_get_monotonic_time();
@@ -356,7 +344,7 @@ bool fl_painter_frame(FlPainter *painter, int frame, GError **error)
     if (drawing) {
         const int region = painter->plan->region;
         painter->result.anchor = fl_drawing_anchor(drawing, region, index * hold);
-        painter->result.drift = fl_drawing_drift(drawing, region, ground_of(painter->shapes),
+        painter->result.drift = fl_drawing_drift(drawing, region, painter->shapes->camera,
                                                  index * hold, painter->shapes->loop);
         painter->result.n_limbs =
             fl_drawing_limbs(drawing, region, index * hold, painter->result.limb);

@@ -10,27 +10,6 @@
 #define MISFIT 0.5   // cells, root of mean squares: more is no motion of a camera
 #define FASTEST 0.25 // turn or growth in a frame beyond which it is a cut
 
-/** The camera's region; auto: the largest ground. */
-bool fl_wet_find_camera(const FlShapes *shapes, const char *wanted, int *camera, GError **error)
-{
-    wanted = wanted ? wanted : "auto";
-    const bool none = g_str_equal(wanted, "none"), found = g_str_equal(wanted, "auto");
-    double most = FL_GROUND_SHARE;
-    *camera = -1;
-    for (int r = 0; r < fl_drawing_regions(shapes->drawing) && !none; r++) {
-        const double share = fl_shapes_share_of_page(shapes, r);
-        const bool named = g_str_equal(wanted, fl_drawing_region(shapes->drawing, r)->name);
-        if (named || (found && share > most))
-            *camera = r, most = share;
-    }
-    if (*camera >= 0 || none || found)
-        return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "camera “%s”: there is no such region; expected auto, none or the name of one",
-                wanted);
-    return false;
-}
-
 /** Adds the motion of the page to least squares. Returns: the number of places at which it is
  * known; *squares: of that motion. */
 static int add_motion(const float *motion, FlRect page, FlLeastSquares *sum, double *squares)
@@ -87,16 +66,16 @@ bool fl_wet_follow_camera(const FlWet *wet, int before, int frame, FlAffine *cam
 {
     const FlRect page = wet->sheet.page;
     const FlDrawing *drawing = wet->shapes->drawing;
-    if (wet->camera < 0 || before < 0)
+    if (wet->shapes->camera < 0 || before < 0)
         return true;
     g_autofree float *motion =
         fl_alloc_unset(2 * fl_rect_pixels(page), sizeof *motion, "a motion", error);
-    if (!motion || !fl_wet_get_motion(wet, wet->camera, before, frame, page, motion, error))
+    if (!motion || !fl_wet_get_motion(wet, wet->shapes->camera, before, frame, page, motion, error))
         return false;
     if (fit_motion(motion, page, came))
         return true;
-    const FlAnchor now = fl_drawing_anchor(drawing, wet->camera, frame);
-    const FlAnchor was = fl_drawing_anchor(drawing, wet->camera, before);
+    const FlAnchor now = fl_drawing_anchor(drawing, wet->shapes->camera, frame);
+    const FlAnchor was = fl_drawing_anchor(drawing, wet->shapes->camera, before);
     *came = FL_AFFINE_NONE;
     came->x0 = (was.x - now.x) / (float)wet->cell, came->y0 = (was.y - now.y) / (float)wet->cell;
     return true;

@@ -220,6 +220,7 @@ static bool mark_moving(const FlWetStep *step, FlMarker *marker, int before, int
                         .motion = planes.motion,
                         .came = within(&step->came, planes.rect),
                         .beside = {wet->camera_x, wet->camera_y},
+                        .half_width = wet->half_width[marker->plan->region],
                         .overlap = overlap_of(&planes),
                         .laid = &wet->laid,
                         .ink = step->painted ? NULL : wet->ink + 3 * marker->plan->region,

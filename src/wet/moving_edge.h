@@ -21,6 +21,7 @@ typedef struct FlWetShape {
     const float *motion; // of the drawing since the frame before, interleaved; NAN: unknown
     FlAffine came;       // the place of the paper below a cell in the frame before
     float beside[2];     // way from each cell of the page to the paper's, less than a cell
+    float half_width;    // where the region is widest, on average of the film
     float overlap;       // share of the smaller of both masks that lies in the other
     const FlLaid *laid;  // of the frame before
     const float *ink;    // its absorbance if that was not painted; NULL: `laid` has it

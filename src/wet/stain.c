@@ -89,6 +89,14 @@ static float away_from_sides(const FlWetShape *shape, float depth)
     return fl_ease(0, 8 * shape->px, depth);
 }
 
+#define BROAD_PX 52 // px of the page: half the width from which on a stain breaks up as deep as any
+
+/** Stretches depths: the stain of a narrow shape breaks up less deep. */
+static float stretch_of(const FlWetShape *shape)
+{
+    return CLAMP(BROAD_PX * shape->px / MAX(shape->half_width, 1), 1, 2);
+}
+
 /** The strength of the stain at a pixel. */
 static float stain_at(const Passing *pixel, const FlWetDials *dials)
 {
@@ -109,7 +117,8 @@ static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, floa
         return;
     const float far = MAX(-now, 0) / (moved + 3 * shape->px);
     const float receded = point->receded - point->receding * (1 - cover.last);
-    const float depth = MIN(MAX(cover.most, depth_between_sides(pixel)), receded);
+    const float between = MAX(cover.most, depth_between_sides(pixel));
+    const float depth = MIN(between * stretch_of(shape), receded);
     const float kept =
         (1 - fl_ease(1.3f, 2, far)) * fl_wet_between(point->kept_before, point->kept, cover.last);
     const float sides = fl_ease(0, 0.25f, kept) * (1 - away_from_sides(shape, depth));

@@ -38,8 +38,7 @@ FlWet *fl_wet_new(const FlShapes *shapes, const FlWetOptions *options, FlWet *be
     wet->sheet.px = page_px / (float)cell;
     wet->sheet.stain_time = (float)options->stain_time;
     wet->sheet.fibres.seed = fl_key(options->seed, 0x776574);
-    if (!fl_wet_find_camera(shapes, options->camera, &wet->camera, error) ||
-        !fl_wet_sheet_init(&wet->sheet, error) ||
+    if (!fl_wet_sheet_init(&wet->sheet, error) ||
         !fl_laid_init(&wet->laid, columns, rows, (float)cell, error) ||
         !(wet->lowest[0] = fl_alloc(n, sizeof(uint16_t), "regions", error)) ||
         !(wet->lowest[1] = fl_alloc(n, sizeof(uint16_t), "regions", error)) ||

@@ -6,11 +6,10 @@
 
 /** The options of wet paper. */
 typedef struct FlWetOptions {
-    uint8_t paper[3];   // on which paint is thought to lie
-    uint64_t seed;      // of the fibres
-    double stain_time;  // frames in which stains fade to a third
-    double overrun;     // px on a page of FL_WET_PAGE_PX that fronts go beyond shapes
-    const char *camera; // the region that carries the paper along, none or auto; NULL: auto
+    uint8_t paper[3];  // on which paint is thought to lie
+    uint64_t seed;     // of the fibres
+    double stain_time; // frames in which stains fade to a third
+    double overrun;    // px on a page of FL_WET_PAGE_PX that fronts go beyond shapes
 } FlWetOptions;
 
 /** Says if any region marks the paper. */

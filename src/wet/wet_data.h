@@ -36,7 +36,6 @@ struct FlWet {
     float *half_width; // of each region where it is widest, cells; below 0: not known yet
     int n_markers;
     FlMarker *marker;
-    int camera;               // the region that carries the paper along; -1: the paper stays
     float camera_x, camera_y; // motion of the paper that is less than a cell
     uint16_t *lowest[2];      // of the page, now and before: fl_surround_lowest()
     int lowest_frame;         // of lowest[0]
@@ -75,9 +74,6 @@ bool fl_wet_get_motion(const FlWet *wet, int region, int before, int now, FlRect
 
 /** Finds where the camera has brought the paper from since the frame before. */
 bool fl_wet_follow_camera(const FlWet *wet, int before, int frame, FlAffine *came, GError **error);
-
-/** Finds the region that carries the paper along; FL_ERROR_USAGE for an unknown name. */
-bool fl_wet_find_camera(const FlShapes *shapes, const char *wanted, int *camera, GError **error);
 
 /** Makes the regions that mark the paper. */
 bool fl_wet_make_markers(FlWet *wet, GError **error);

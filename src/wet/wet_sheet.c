@@ -9,6 +9,7 @@
 #define FRONT_FRAMES 2.2f // in which a front dries
 #define GONE_FRAMES 36    // after which a stain is gone
 #define STRENGTH 0.9f     // of absorbances on the paper
+#define BODY 0.85f        // least opacity of marks, by their cover
 #define FRAYED_PX 14      // px of the page to which the sides of a stain break up, at most
 
 bool fl_wet_sheet_init(FlWetSheet *sheet, GError **error)
@@ -313,7 +314,7 @@ void fl_wet_sheet_wet(FlWetSheet *sheet, const FlFrontStyle *style, float frames
 /** The contents of some px of a row, the paper there, and the light that they let through. */
 typedef struct Batch {
     int n, px[BATCH];
-    float contents[N_CHANNELS][BATCH], hollow[BATCH], spot[BATCH], through[3][BATCH];
+    float contents[N_CHANNELS][BATCH], hollow[BATCH], spot[BATCH], through[3][BATCH], cover[BATCH];
 } Batch;
 
 /** Finds the light of each px. A front is as sharp as the px: it ends where its edge is 0. A stain
@@ -343,7 +344,8 @@ static inline void shine_through(const FlWetSheet *on, Batch *restrict batch)
         const float frayed = frayed_to(sheet, hollow, spot) * (1 - MIN(3 * front, 1));
         const float sides = fl_ease(-0.5f, soft, (m[DEPTH][i] - frayed) * cell_px) / stains;
         const float stain = MIN(sides * (film + pigment - film * pigment / stains), 1);
-        const float dense = STRENGTH * (1 - (1 - stain) * (1 - front)) / paint;
+        batch->cover[i] = 1 - (1 - stain) * (1 - front);
+        const float dense = STRENGTH * batch->cover[i] / paint;
         batch->through[0][i] = fl_fall(dense * m[INK][i]);
         batch->through[1][i] = fl_fall(dense * m[INK + 1][i]);
         batch->through[2][i] = fl_fall(dense * m[INK + 2][i]);
@@ -352,12 +354,13 @@ static inline void shine_through(const FlWetSheet *on, Batch *restrict batch)
 
 FL_FOR_EACH_CPU(find_light, shine_through, (const FlWetSheet *sheet, Batch *batch), (sheet, batch))
 
-/** The light that marks let through, as straight RGBA over the paper. Returns: true if any is
- * missing. */
-static bool write_px(const float through[3], const uint8_t paper[3], uint8_t *rgba)
+/** The light that marks let through, as straight RGBA over the paper. Where it is nearly all of it
+ * they have the paper's colour, and so much body that they are pale on a dark ground. Returns: true
+ * if any is missing. */
+static bool write_px(const float through[3], float cover, const uint8_t paper[3], uint8_t *rgba)
 {
     const float least = MIN(MIN(through[0], through[1]), through[2]);
-    const int alpha = (int)(255 * (1 - least) + 0.75f);
+    const int alpha = (int)(255 * MAX(1 - least, BODY * cover) + 0.75f);
     const float shown = 255 / (float)MAX(alpha, 1);
     for (int c = 0; c < 3 && alpha > 0; c++) {
         const float own = (float)paper[c] * (1 - (1 - through[c]) * shown);
@@ -413,7 +416,8 @@ static bool layer_row(const FlWetSheet *sheet, float (*cells)[N_CHANNELS], FlRec
         for (int i = 0; i < batch.n; i++) {
             const float through[3] = {batch.through[0][i], batch.through[1][i],
                                       batch.through[2][i]};
-            any = write_px(through, paper, rgba + 4 * (size_t)(batch.px[i] - row.x)) || any;
+            uint8_t *const to = rgba + 4 * (size_t)(batch.px[i] - row.x);
+            any = write_px(through, batch.cover[i], paper, to) || any;
         }
     }
     return any;
