@@ -12,7 +12,6 @@ typedef struct Front {
     const FlWetShape *shape;
     const FlMovingEdge *edge;
     const FlWetDials *dials;
-    bool any;        // of its cells are wet
     float *width;    // cells that the front reaches ahead
     float *strength; // 0..1: below 1 where a shape outruns its front
 } Front;
@@ -32,6 +31,24 @@ static float calm_of(const FlWetShape *shape, const FlEdgePoint *point)
     return fl_bell(MAX(fabsf(point->speed), moved) / (1.8f * width));
 }
 
+/** The way that a front reaches ahead of a point. */
+static float width_of(const FlWetShape *shape, const FlWetDials *dials, const FlEdgePoint *point,
+                      float calm)
+{
+    const float most = MIN(14.4f * shape->px, 0.38f * point->half_width);
+    return dials->front * dials->style->width * lead_of(shape, point) * calm * most;
+}
+
+bool fl_marks_have_front(const FlWetShape *shape, const FlMovingEdge *edge, const FlWetDials *dials)
+{
+    bool any = false;
+    for (int i = 0; i < edge->n && !any; i++) {
+        const FlEdgePoint *point = &edge->point[i];
+        any = width_of(shape, dials, point, calm_of(shape, point)) > 0.5f * shape->px;
+    }
+    return any;
+}
+
 static bool make_planes(Front *front, GError **error)
 {
     const FlWetShape *shape = front->shape;
@@ -44,14 +61,9 @@ static bool make_planes(Front *front, GError **error)
     for (int i = 0; i < edge->n; i++) {
         const FlEdgePoint *point = &edge->point[i];
         const float calm = calm_of(shape, point);
-        const float most = MIN(14.4f * shape->px, 0.38f * point->half_width);
-        widths[i] =
-            front->dials->front * front->dials->style->width * lead_of(shape, point) * calm * most;
+        widths[i] = width_of(shape, front->dials, point, calm);
         strengths[i] = fl_ease(0.1f, 0.6f, calm);
-        front->any = front->any || widths[i] > 0.5f * shape->px;
     }
-    if (!front->any)
-        return true;
     for (size_t p = 0; p < n; p++) {
         const int32_t nearest = edge->contour.nearest[p];
         const float share = front->dials->front_map ? front->dials->front_map[p] : 1;
@@ -131,8 +143,8 @@ bool fl_marks_add_front(const FlWetShape *shape, const FlMovingEdge *edge,
                         GArray *marks, GError **error)
 {
     Front front = {.shape = shape, .edge = edge, .dials = dials};
-    const bool made = edge->n == 0 || make_planes(&front, error);
-    if (made && front.any)
+    const bool made = make_planes(&front, error);
+    if (made)
         add_marks(&front, around, sheet, marks);
     free(front.width);
     free(front.strength);

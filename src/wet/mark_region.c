@@ -34,21 +34,17 @@ static int frame_ahead(const FlWet *wet, int frame, int ahead)
     return wet->shapes->loop ? (frame + ahead) % n : MIN(frame + ahead, n - 1);
 }
 
-/** Planes of a region's rectangle. */
+/** Planes of a region's rectangle, in the memory of `now`, `motion` and the maps. */
 typedef struct Planes {
     FlRect rect;
-    uint8_t *now, *ahead, *touches;
-    float *distance_before, *beyond, *motion;
+    uint8_t *now, *then, *touches; // `then`: scratch
+    float *motion, *distance_before, *beyond;
     float *front, *stain; // control maps; NULL: none
 } Planes;
 
 static void planes_clear(Planes *planes)
 {
     free(planes->now);
-    free(planes->ahead);
-    free(planes->touches);
-    free(planes->distance_before);
-    free(planes->beyond);
     free(planes->motion);
     free(planes->front);
     free(planes->stain);
@@ -59,14 +55,13 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Planes, planes_clear)
 static bool planes_init(Planes *planes, FlRect rect, GError **error)
 {
     const size_t n = fl_rect_pixels(rect);
-    const char *what = "the edge of a region";
     planes->rect = rect;
-    return (planes->now = fl_alloc_unset(n, 1, what, error)) &&
-           (planes->ahead = fl_alloc_unset(n, 1, what, error)) &&
-           (planes->touches = fl_alloc_unset(n, 1, what, error)) &&
-           (planes->distance_before = fl_alloc_unset(n, sizeof(float), what, error)) &&
-           (planes->beyond = fl_alloc_unset(n, sizeof(float), what, error)) &&
-           (planes->motion = fl_alloc(2 * n, sizeof(float), what, error));
+    if (!(planes->now = fl_alloc_unset(3 * n, 1, "the edge of a region", error)) ||
+        !(planes->motion = fl_alloc(4 * n, sizeof(float), "the edge of a region", error)))
+        return false;
+    planes->then = planes->now + n, planes->touches = planes->now + 2 * n;
+    planes->distance_before = planes->motion + 2 * n, planes->beyond = planes->motion + 3 * n;
+    return true;
 }
 
 /** Around all masks that a region's marks depend on. */
@@ -82,22 +77,28 @@ static FlRect marked_part(const FlWet *wet, const FlRegionPlan *plan, int before
     return fl_rect_on_grid(fl_rect_grown(fl_wet_cells_of(wet, box), margin, wet->sheet.page), 2);
 }
 
-static bool read_ahead(const FlWet *wet, const FlRegionPlan *plan, int now, Planes *planes,
-                       GError **error)
+/** Finds the distance of each cell to the masks of this frame and of those ahead: adds these to
+ * `now`. */
+static bool find_beyond(const FlWet *wet, const FlRegionPlan *plan, int now, Planes *planes,
+                        GError **error)
 {
-    const size_t n = fl_rect_pixels(planes->rect);
+    const FlRect rect = planes->rect;
+    const size_t n = fl_rect_pixels(rect);
     int last = now;
-    memcpy(planes->ahead, planes->now, n);
     for (int a = 1; a <= AHEAD_FRAMES; a++) {
         const int frame = fl_wet_shown_by(plan, frame_ahead(wet, now, a));
         if (frame == last || fl_mask_store_same(wet->shapes->masks, plan->region, frame, last))
             continue;
-        if (!fl_wet_get_mask(wet, plan->region, frame, planes->rect, planes->touches, error))
+        if (!fl_wet_get_mask(wet, plan->region, frame, rect, planes->then, error))
             return false;
         for (size_t p = 0; p < n; p++)
-            planes->ahead[p] = MAX(planes->ahead[p], planes->touches[p]);
+            planes->now[p] = MAX(planes->now[p], planes->then[p]);
         last = frame;
     }
+    if (!fl_distance(planes->now, rect.width, rect.height, planes->beyond, error))
+        return false;
+    for (size_t p = 0; p < n; p++)
+        planes->beyond[p] = MAX(-planes->beyond[p], 0);
     return true;
 }
 
@@ -152,14 +153,10 @@ static bool read_planes(const FlWetStep *step, FlMarker *marker, int before, int
     const int region = marker->plan->region;
     const FlRect rect = planes->rect;
     if (!fl_wet_get_mask(wet, region, now, rect, planes->now, error) ||
-        !read_ahead(wet, marker->plan, now, planes, error) ||
-        !fl_wet_get_mask(wet, region, before, rect, planes->touches, error) ||
-        !fl_distance(planes->touches, rect.width, rect.height, planes->distance_before, error) ||
-        !find_touches(wet, region, planes, error) ||
-        !fl_distance(planes->ahead, rect.width, rect.height, planes->beyond, error))
+        !fl_wet_get_mask(wet, region, before, rect, planes->then, error) ||
+        !fl_distance(planes->then, rect.width, rect.height, planes->distance_before, error) ||
+        !find_touches(wet, region, planes, error))
         return false;
-    for (size_t p = 0; p < fl_rect_pixels(rect); p++) // of each pixel to the masks ahead
-        planes->beyond[p] = MAX(-planes->beyond[p], 0);
     return !moves || !wet->motion ||
            fl_wet_get_motion(wet, region, before, now, rect, planes->motion, error);
 }
@@ -235,8 +232,10 @@ static bool mark_moving(const FlWetStep *step, FlMarker *marker, int before, int
     g_array_set_size(marker->fronts, 0);
     fl_marks_add_stain(&shape, &edge, &around, &dials, marker->stains, marker->fronts);
     marker->rests = !moves && edge.fastest < 0.02f * wet->sheet.px;
-    const bool marked = dials.front <= 0 || fl_marks_add_front(&shape, &edge, &around, &dials,
-                                                               &wet->sheet, marker->fronts, error);
+    const bool marked =
+        !fl_marks_have_front(&shape, &edge, &dials) ||
+        (find_beyond(wet, marker->plan, now, &planes, error) &&
+         fl_marks_add_front(&shape, &edge, &around, &dials, &wet->sheet, marker->fronts, error));
     const FlMovingEdge before_edge = marker->before;
     marker->before = edge, edge = before_edge;
     return marked;

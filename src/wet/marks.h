@@ -17,12 +17,17 @@ typedef struct FlWetDials {
 
 /** The surroundings of a region, planes of its rect. */
 typedef struct FlWetAround {
-    const float *beyond;    // distance to its masks now and in some frames to come, cells; 0 inside
+    const float *beyond; // distance to its masks now and in some frames to come, cells; 0 inside;
+                         // for fronts alone
     const uint8_t *touches; // bit 0: the region lies on bare paper; bit 1: it did so in the frame
                             // before, or on a limb
 } FlWetAround;
 
-/** Adds the front of a frame to an array of FlFrontMark. FL_ERROR_NO_MEMORY. */
+/** Says if a region has a front in a frame. */
+bool fl_marks_have_front(const FlWetShape *shape, const FlMovingEdge *edge,
+                         const FlWetDials *dials);
+
+/** Adds that front to an array of FlFrontMark. FL_ERROR_NO_MEMORY. */
 bool fl_marks_add_front(const FlWetShape *shape, const FlMovingEdge *edge,
                         const FlWetAround *around, const FlWetDials *dials, const FlWetSheet *sheet,
                         GArray *marks, GError **error);

@@ -14,20 +14,6 @@ float fl_wet_absorbance(uint8_t paint, uint8_t paper)
     return CLAMP(density * 0.693147181f, 0.0f, 4.0f);
 }
 
-float fl_wet_plane_at(const float *plane, FlRect rect, float x, float y)
-{
-    const float cx = CLAMP(x, 0.0f, (float)rect.width - 1.001f);
-    const float cy = CLAMP(y, 0.0f, (float)rect.height - 1.001f);
-    const int ix = (int)cx, iy = (int)cy;
-    const float tx = cx - (float)ix, ty = cy - (float)iy;
-    const float *row = plane + (size_t)iy * (size_t)rect.width + ix;
-    const float *next = iy + 1 < rect.height ? row + rect.width : row;
-    const int right = ix + 1 < rect.width;
-    const float upper = row[0] + (row[right] - row[0]) * tx;
-    const float lower = next[0] + (next[right] - next[0]) * tx;
-    return upper + (lower - upper) * ty;
-}
-
 static float coverage_at(const FlWetShape *shape, int x, int y)
 {
     const FlRect rect = shape->rect;

@@ -12,6 +12,7 @@ typedef struct Passing {
     const float *distance;    // of the shape as it is now
     float inset;              // paint ends so far inside its shape, cells
     float x, y;
+    float before_x, before_y; // its place a frame before
 } Passing;
 
 #define MOST_STEPS 12
@@ -22,10 +23,8 @@ static float depth_at(const Passing *pixel, float time)
 {
     const FlWetShape *shape = pixel->shape;
     const float x = pixel->x, y = pixel->y, u = pixel->point->u, v = pixel->point->v;
-    float ground[2];
-    fl_wet_ground(shape, x, y, ground);
     const float before = fl_wet_plane_at(shape->distance_before, shape->rect,
-                                         x - ground[0] - time * u, y - ground[1] - time * v);
+                                         pixel->before_x - time * u, pixel->before_y - time * v);
     const float now =
         fl_wet_plane_at(pixel->distance, shape->rect, x + (1 - time) * u, y + (1 - time) * v);
     return before + time * (now - before) - pixel->inset;
@@ -180,7 +179,10 @@ void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
             const bool far = -now > reach && shape->distance_before[p] < inset - reach;
             if (now >= 0.5f || far)
                 continue;
-            const Passing pixel = {shape, point, edge->distance, inset, px, py};
+            float ground[2];
+            fl_wet_ground(shape, px, py, ground);
+            const Passing pixel = {shape, point, edge->distance, inset,
+                                   px,    py,    px - ground[0], py - ground[1]};
             const int32_t at = (rect.y + y) * shape->page.width + rect.x + x;
             pass(&pixel, dials, at, now, marks);
             if (below > 0.5f)

@@ -106,6 +106,11 @@ static void read_cell(const FlWetCell *cell, float to[N_CHANNELS])
         to[INK + c] = paint * cell->ink[c];
 }
 
+static bool is_wet(const FlWetCell *cell)
+{
+    return cell->front > 0 || cell->stain > 0 || cell->film > 0;
+}
+
 /** The sums of the contents around a place between cells, by shares; beyond the page all is dry. */
 static void mix_cells(const FlWetSheet *sheet, FlPoint at, float sum[N_CHANNELS])
 {
@@ -119,9 +124,14 @@ static void mix_cells(const FlWetSheet *sheet, FlPoint at, float sum[N_CHANNELS]
             continue;
         const bool there =
             column >= 0 && row >= 0 && column < sheet->page.width && row < sheet->page.height;
-        const size_t cell = (size_t)row * (size_t)sheet->page.width + (size_t)column;
+        const FlWetCell *cell =
+            there ? &sheet->cell[(size_t)row * (size_t)sheet->page.width + (size_t)column] : NULL;
+        if (!cell || !is_wet(cell)) {
+            sum[EDGE] -= share, sum[DEPTH] -= share;
+            continue;
+        }
         float own[N_CHANNELS];
-        read_cell(there ? &sheet->cell[cell] : &(FlWetCell){0}, own);
+        read_cell(cell, own);
         for (int c = 0; c < N_CHANNELS; c++)
             sum[c] += share * own[c];
     }
@@ -201,7 +211,7 @@ void fl_wet_sheet_dry(FlWetSheet *sheet, float frames)
             cell->front = cell->front > 0.01f * frames ? cell->front - 0.01f * frames : 0;
             if (cell->age > GONE_FRAMES)
                 cell->stain = cell->film = 0;
-            if (cell->front > 0 || cell->stain > 0 || cell->film > 0)
+            if (is_wet(cell))
                 found = (FlColumns){MIN(found.first, x), x + 1};
         }
         wet = fl_rect_or(wet, fl_rect_between(found.first, y, found.last, y + 1));
