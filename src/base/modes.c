@@ -1,6 +1,5 @@
 #include "base/modes.h"
 
-#include <math.h>
 #include <string.h>
 
 void fl_modes_at(double rx, double ry, double mode[FL_MODES][2])

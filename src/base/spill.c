@@ -8,7 +8,6 @@
 #include <fcntl.h>
 #include <glib/gstdio.h>
 #include <stdint.h>
-#include <string.h>
 #include <unistd.h>
 
 typedef struct Block {

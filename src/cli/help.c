@@ -2,8 +2,6 @@
 
 #include "words.h"
 
-#include <string.h>
-
 #define HELP_COLUMN 31
 
 static const char *const titles[] = {

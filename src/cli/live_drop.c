@@ -3,7 +3,6 @@
 #include "base/file.h"
 
 #include <gio/gio.h>
-#include <string.h>
 
 #define KNOWN "^[^./[:cntrl:]][^/[:cntrl:]]{0,190}\\.(svgz?|css|json|lottie)$"
 

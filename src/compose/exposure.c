@@ -2,7 +2,6 @@
 
 #include "base/alloc.h"
 #include "base/error.h"
-#include <string.h>
 
 /**
  * The weight of each pixel of a region in its rectangle: its visible share. Hidden pixels have a

@@ -7,7 +7,6 @@
 #include <glib.h>
 #include <math.h>
 #include <stdbool.h>
-#include <string.h>
 
 #define SHARES 9
 #define THICKNESSES 24

@@ -5,7 +5,6 @@
 #include "io/picture_file.h"
 #include "style/resample.h"
 #include <math.h>
-#include <string.h>
 
 #define FINE_PX 4
 #define TOOTH_END 125 // of FL_TOOTH_ONE: 2.2 standard deviations

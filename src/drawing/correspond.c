@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define STILL_PX 0.02   // outlines that differ by less are where they were
 #define LOCAL 0.002     // share of its extent by which local coordinates may differ

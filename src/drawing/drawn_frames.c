@@ -2,7 +2,6 @@
 #include "base/rng.h"
 #include "drawing/drawing.h"
 #include "drawing/drawing_data.h"
-#include <string.h>
 
 #define MOST_KEPT ((size_t)32 << 20) // bytes
 

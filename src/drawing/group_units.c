@@ -1,7 +1,5 @@
 #include "drawing/survey.h"
 
-#include <string.h>
-
 /** The trees of all leaves that are drawn one by one, as texts. */
 static GHashTable *single_trees(const FlSurvey *survey)
 {

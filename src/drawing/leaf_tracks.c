@@ -1,8 +1,6 @@
 #include "drawing/region_identity.h"
 
 #include "base/colour_difference.h"
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /*

@@ -1,7 +1,6 @@
 #include "drawing/survey.h"
 
 #include <math.h>
-#include <string.h>
 
 #define PAGE_PX 1000.0  // of the page on which shapes are measured, one user unit a pixel
 #define SIZE_PX 0.35    // by how much the size of a shape may differ; files have one decimal

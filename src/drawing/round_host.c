@@ -1,7 +1,6 @@
 #include "base/modes.h"
 #include "drawing/correspondence.h"
 #include <math.h>
-#include <string.h>
 
 #define ROUND 0.005     // share of the radius that a round outline keeps to
 #define LEAST_DETAILS 2 // one that slides by is no sign of turning

@@ -5,7 +5,6 @@
 #include "worker/verbs.h"
 #include <math.h>
 #include <stdatomic.h>
-#include <string.h>
 
 #define MOST_ROUNDS 3 // in which a group that is one leaf becomes so in other frames
 #define TELL_US (G_USEC_PER_SEC / 10)

@@ -1,7 +1,6 @@
 #include "guides/cover.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 double fl_stroke_px(const FlGeometry *g)
 {

@@ -4,7 +4,6 @@
 #include "base/file.h"
 #include "base/rect.h"
 
-#include <errno.h>
 #include <gio/gio.h>
 #include <math.h>
 #include <stdint.h>

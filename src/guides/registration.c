@@ -4,7 +4,6 @@
 #include "base/modes.h"
 #include "guides/blur.h"
 #include "guides/flow.h"
-#include "guides/guides.h"
 #include "guides/laplace.h"
 #include "guides/part_tracking.h"
 #include <math.h>

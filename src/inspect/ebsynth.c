@@ -3,7 +3,6 @@
 #include "base/alloc.h"
 #include "io/atomic_file.h"
 #include "io/png.h"
-#include <string.h>
 
 #define UNIFORMITY 3500 // ebsynth's own default
 

@@ -12,7 +12,6 @@
 #include "params/options.h"
 #include <fluidy/style.h>
 
-#include <math.h>
 #include <string.h>
 
 /* A drawing with its options. */

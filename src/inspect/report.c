@@ -8,10 +8,8 @@
 #include "io/atomic_file.h"
 #include "params/text.h"
 #include "style/resample.h"
-#include <errno.h>
 #include <fluidy/fluidy.h>
 #include <math.h>
-#include <string.h>
 
 #define MAX_SIDE 480       // px of a picture in the page
 #define GOOD_SIDE 240      // the page grows rather than go below

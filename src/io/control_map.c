@@ -5,7 +5,6 @@
 #include "io/picture_file.h"
 #include "io/picture_series.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,10 +1,8 @@
 #include "io/provenance.h"
 
 #include "base/file.h"
-#include <errno.h>
 #include <fcntl.h>
 #include <libdeflate.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>

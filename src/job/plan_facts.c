@@ -3,7 +3,6 @@
 
 #include "io/pattern.h"
 #include "io/picture_file.h"
-#include <string.h>
 
 /* ---- files ----------------------------------------------------------------------------------- */
 

@@ -4,7 +4,6 @@
 #include "drawing/drawing.h"
 #include "io/pattern.h"
 #include "io/picture_file.h"
-#include "params/options.h"
 #include <string.h>
 
 static FlSequenceOptions frames_of(const FlRenderOptions *options)

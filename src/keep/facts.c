@@ -5,8 +5,6 @@
 #include <dlfcn.h>
 #include <fluidy/fluidy.h>
 #include <librsvg/rsvg.h>
-#include <stdbool.h>
-#include <string.h>
 
 #define DIGEST "digest " // begins a value that a reader cannot interpret
 

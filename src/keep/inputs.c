@@ -4,10 +4,7 @@
 #include "base/file.h"
 #include "io/pattern.h"
 #include "io/picture_series.h"
-#include <fcntl.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

@@ -3,11 +3,9 @@
 #include "base/alloc.h"
 #include "base/error.h"
 #include "base/file.h"
-#include <errno.h>
 #include <fcntl.h>
 #include <libdeflate.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #define MAGIC "fluidyk1"

@@ -3,7 +3,6 @@
 #include "base/alloc.h"
 #include "guides/blur.h"
 #include <math.h>
-#include <string.h>
 
 bool fl_fluid_planes_init(FlFluidPlanes *planes, int width, int height, int first, int end,
                           GError **error)

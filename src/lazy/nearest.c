@@ -2,7 +2,6 @@
 
 #include "base/alloc.h"
 #include "base/rng.h"
-#include <string.h>
 
 #define TILE 16 // side of a tile of targets; they are searched as a chequerboard
 

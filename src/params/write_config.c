@@ -1,9 +1,6 @@
 #include "params/config.h"
 
-#include "base/error.h"
 #include "params/options.h"
-
-#include <string.h>
 
 /* A config that is being written. */
 typedef struct Writer {

@@ -1,11 +1,9 @@
 #include "render/painters.h"
 
 #include "base/alloc.h"
-#include "base/error.h"
 #include "base/limits.h"
 #include "base/schedule.h"
 #include "guides/flow_file.h"
-#include "inspect/report.h"
 #include "io/pattern.h"
 #include <math.h>
 

@@ -9,7 +9,6 @@
 #include "render/frame_writer.h"
 #include "render/frames.h"
 #include "render/loop.h"
-#include <fluidy/fluidy.h>
 #include <string.h>
 
 /* A render in progress. */

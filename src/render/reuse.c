@@ -1,10 +1,7 @@
 #include "render/reuse.h"
 
-#include "base/alloc.h"
 #include "base/reader.h"
-#include "inspect/report.h"
 #include "render/loop.h"
-#include <string.h>
 
 /* A slot that every render of the same drawing and region uses: what it was painted by last. */
 static FlDigest slot_of(const FlShapes *shapes, int p)

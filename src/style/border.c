@@ -2,10 +2,8 @@
 
 #include "base/alloc.h"
 #include "guides/distance.h"
-#include "guides/guides.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { DEEPEST = 255 };
 

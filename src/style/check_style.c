@@ -9,8 +9,6 @@
 #include "style/style_guides.h"
 
 #include <fluidy/style.h>
-#include <math.h>
-#include <string.h>
 
 /* The limits for a good style; more in find_frame_problems(). */
 static const float LEAST_PAINT = 0.4f;   // of the last frame

@@ -1,7 +1,5 @@
 #include "style/estimate.h"
 
-#include <string.h>
-
 static void median_outside(const FlClip *clip, const uint8_t *mask, uint8_t paper[3])
 {
     const size_t pixels = (size_t)clip->width * clip->height * clip->n_frames;

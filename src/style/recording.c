@@ -9,7 +9,6 @@
 #include <fluidy/style.h>
 
 #include <math.h>
-#include <string.h>
 
 enum { LARGEST_SIDE = 640 }; // a larger recording is scaled down to it by default
 

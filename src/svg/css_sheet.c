@@ -5,7 +5,6 @@
 #include "svg/css_properties.h"
 #include "svg/css_scan.h"
 #include "svg/document.h"
-#include <limits.h>
 #include <string.h>
 
 #define MOST_NESTED 32          // blocks in blocks, imports in imports

@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/limits.h"
-#include <errno.h>
 #include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <libxml/parser.h>

@@ -2,7 +2,6 @@
 
 #include "svg/document.h"
 #include <fontconfig/fontconfig.h>
-#include <string.h>
 
 #define USUAL "Times New Roman" // librsvg's font for text without a font-family
 

@@ -7,7 +7,6 @@
 #include "svg/webp.h"
 #include <gdk-pixbuf/gdk-pixbuf.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define BLOCK 4096 // bytes; the first usually has the size

@@ -1,7 +1,6 @@
 #include "svg/pose.h"
 
 #include <math.h>
-#include <string.h>
 
 #define FLAT 0.02 // share of the extent's square from which on the area of an outline has a pose
 

@@ -1,7 +1,6 @@
 #include "synth/target.h"
 
 #include "base/alloc.h"
-#include <string.h>
 
 #define EXT_UNIT_SQUARED (FL_EXT_UNIT * FL_EXT_UNIT)
 #define WEIGHTS_SUM 5   // 25 pixels * 5 * FL_ONE^2 < 2^31: the other terms still fit in 32 bits

@@ -3,7 +3,6 @@
 #include "base/alloc.h"
 #include "base/curves.h"
 #include <math.h>
-#include <string.h>
 
 // Weights of what is held small beside the loss: how the velocity changes, its size, folds.
 #define W_CHANGE 2e-3f

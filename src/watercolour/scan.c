@@ -5,7 +5,6 @@
 #include "guides/connected_parts.h"
 
 #include <math.h>
-#include <string.h>
 
 /* ---- the mask, from the thickness of the pigment ---- */
 

@@ -5,7 +5,6 @@
 #include "base/curves.h"
 #include "base/windows.h"
 #include "guides/distance.h"
-#include "guides/guides.h"
 #include <math.h>
 
 #define AHEAD_FRAMES 4 // a front wets paper where the figure will be so soon

@@ -4,7 +4,6 @@
 #include "base/curves.h"
 #include "base/density.h"
 #include "guides/distance.h"
-#include "guides/guides.h"
 #include "wet/fibres.h"
 #include <math.h>
 

@@ -1,7 +1,6 @@
 #include "wet/marks.h"
 
 #include "base/curves.h"
-#include "guides/guides.h"
 #include <math.h>
 #include <string.h>
 

@@ -4,7 +4,6 @@
 #include "base/curves.h"
 #include "base/rng.h"
 #include "base/schedule.h"
-#include "guides/guides.h"
 #include "wet/wet_data.h"
 #include <math.h>
 

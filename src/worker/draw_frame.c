@@ -4,7 +4,6 @@
 #include "worker/hand_line.h"
 #include "worker/raster.h"
 #include "worker/verbs.h"
-#include <math.h>
 #include <string.h>
 
 /*

@@ -7,7 +7,6 @@
 #include "base/rng.h"
 #include <math.h>
 #include <stddef.h>
-#include <string.h>
 
 #define MITRE 4.f         // half widths that a corner reaches, at SVG's usual limit
 #define FAR 1e30f         // squared distance of what no piece is near

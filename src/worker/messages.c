@@ -1,7 +1,6 @@
 #include "worker/messages.h"
 
 #include "base/error.h"
-#include "base/limits.h"
 #include <math.h>
 #include <string.h>
 
