@@ -8,6 +8,9 @@
 /** Sets an error of FL_ERROR. Returns: false. */
 bool fl_fail(GError **error, FlError code, const char *format, ...) G_GNUC_PRINTF(3, 4);
 
+/** The same for functions that return a pointer. Returns: NULL. */
+#define fl_none(...) (fl_fail(__VA_ARGS__), NULL)
+
 /** Sets FL_ERROR_EXISTS about a file that must not be replaced. Returns: false. */
 bool fl_exists_error(GError **error, const char *path);
 

@@ -96,10 +96,8 @@ GPtrArray *fl_folder_names(const char *folder, GError **error)
 {
     g_autoptr(GError) reason = NULL;
     g_autoptr(GDir) dir = g_dir_open(folder, 0, &reason);
-    if (!dir) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", reason->message);
-        return NULL;
-    }
+    if (!dir)
+        return fl_none(error, FL_ERROR_INPUT, "%s", reason->message);
     GPtrArray *names = g_ptr_array_new_with_free_func(g_free);
     for (const char *name; (name = g_dir_read_name(dir));)
         g_ptr_array_add(names, g_strdup(name));

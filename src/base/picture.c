@@ -1,15 +1,14 @@
 #include "base/picture.h"
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/limits.h"
 
 FlPicture *fl_picture_new(int width, int height, GError **error)
 {
     g_autofree char *where = g_strdup_printf("a picture of %dx%d pixels", width, height);
-    if (width < 1 || height < 1) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: expected 1 or more", where);
-        return NULL;
-    }
+    if (width < 1 || height < 1)
+        return fl_none(error, FL_ERROR_INPUT, "%s: expected 1 or more", where);
     if (!fl_limit_check(FL_LIMIT_IMAGE, (double)width * height / 1e6, where, error))
         return NULL;
     uint8_t *rgba = fl_alloc((size_t)width * height, 4, "a picture", error);

@@ -1,24 +1,21 @@
 #include "base/surface.h"
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include <string.h>
 
 #define MAX_SIDE 32767 // px; cairo's limit
 
 cairo_surface_t *fl_surface_new(cairo_format_t format, int width, int height, GError **error)
 {
-    if (width < 1 || height < 1 || width > MAX_SIDE || height > MAX_SIDE) {
-        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                    "a picture of %dx%d pixels; expected 1 to %d on each side", width, height,
-                    MAX_SIDE);
-        return NULL;
-    }
+    if (width < 1 || height < 1 || width > MAX_SIDE || height > MAX_SIDE)
+        return fl_none(error, FL_ERROR_LIMIT,
+                       "a picture of %dx%d pixels; expected 1 to %d on each side", width, height,
+                       MAX_SIDE);
     g_autoptr(cairo_surface_t) surface = cairo_image_surface_create(format, width, height);
-    if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS) {
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "a picture of %dx%d pixels: %s", width,
-                    height, cairo_status_to_string(cairo_surface_status(surface)));
-        return NULL;
-    }
+    if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS)
+        return fl_none(error, FL_ERROR_NO_MEMORY, "a picture of %dx%d pixels: %s", width, height,
+                       cairo_status_to_string(cairo_surface_status(surface)));
     return g_steal_pointer(&surface);
 }
 

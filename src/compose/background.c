@@ -1,5 +1,6 @@
 #include "compose/background.h"
 
+#include "base/error.h"
 #include "io/pattern.h"
 #include "io/picture_file.h"
 #include "io/png.h"
@@ -45,11 +46,10 @@ bool fl_background_init(FlBackground *background, const char *text, const uint8_
         background->pattern = text;
         background->opaque = pictures_are_opaque(background, drawing);
     } else {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "background “%s”: expected #rrggbb, none, a " FL_PICTURE_FILES
-                    " file or a pattern of them",
-                    text);
-        return false;
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "background “%s”: expected #rrggbb, none, a " FL_PICTURE_FILES
+                       " file or a pattern of them",
+                       text);
     }
     return true;
 }

@@ -1,5 +1,6 @@
 #include "compose/ink.h"
 #include "base/density.h"
+#include "base/error.h"
 #include "base/rect.h"
 
 #include <string.h>
@@ -133,13 +134,11 @@ FlInk *fl_ink_new(const uint8_t paper[3], const uint8_t *rgb, const uint8_t *mas
         square += (int64_t)median[c] * median[c];
     }
     const int64_t least = FL_DENSITY_ONE / 50; // 1.4 % of light: about three levels
-    if (square < least * least) {
-        g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
-                    "the paint inside the masks has the paper's colour #%02x%02x%02x; expected "
-                    "paint that differs from it",
-                    paper[0], paper[1], paper[2]);
-        return NULL;
-    }
+    if (square < least * least)
+        return fl_none(error, FL_ERROR_STYLE,
+                       "the paint inside the masks has the paper's colour #%02x%02x%02x; expected "
+                       "paint that differs from it",
+                       paper[0], paper[1], paper[2]);
     set_parts(ink, median, FL_AMOUNT_ONE * 256);
     count_amounts(ink, rgb, mask, n_pixels, h);
     /* The median of the projections is not the projection of the channels' medians. */

@@ -298,11 +298,10 @@ static bool kind_of(const char *paper, int *kind, GError **error)
     if (*kind >= 0 || g_str_equal(paper, "none") || fl_text_choice(paper, FL_PAPER_WORDS, kind) ||
         fl_picture_named(paper))
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "paper “%s”: expected none, cold, hot, rough, laid, kraft or a " FL_PICTURE_FILES
-                " file",
-                paper);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE,
+                   "paper “%s”: expected none, cold, hot, rough, laid, kraft or a " FL_PICTURE_FILES
+                   " file",
+                   paper);
 }
 
 bool fl_paper_check(const char *paper, GError **error)

@@ -96,11 +96,9 @@ static bool report(const FlWarnings *warnings, const FlCaller *caller, GError **
                                     ? g_strdup(first)
                                     : g_strdup_printf("%s; and so for %d more element%s", first,
                                                       n_alike - 1, n_alike == 2 ? "" : "s");
-        if (caller->strict) {
-            g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s (%d warning%s under ‘strict’)", line,
-                        n, n == 1 ? "" : "s");
-            return false;
-        }
+        if (caller->strict)
+            return fl_fail(error, FL_ERROR_INPUT, "%s (%d warning%s under ‘strict’)", line, n,
+                           n == 1 ? "" : "s");
         (void)fl_warn(caller, NULL, FL_ERROR_INPUT, "%s", line);
     }
     return true;

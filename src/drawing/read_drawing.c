@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "base/file.h"
 #include "base/rect.h"
 #include "drawing/drawing_data.h"
@@ -522,12 +523,10 @@ static FlDrawing *make_film(const FlDrawingOptions *options, FlSequence *sequenc
     g_autoptr(GArray) groups = fl_region_identities_find(survey, options);
     apply_names(survey, groups, options->rules, options->n_rules);
     merge_regions(survey, groups, options->rules);
-    if (groups->len > INT16_MAX) {
-        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                    "%s: %u regions, more than the limit of %d; use another ‘key’",
-                    sequence->frame[0].file, groups->len, INT16_MAX);
-        return NULL;
-    }
+    if (groups->len > INT16_MAX)
+        return fl_none(error, FL_ERROR_LIMIT,
+                       "%s: %u regions, more than the limit of %d; use another ‘key’",
+                       sequence->frame[0].file, groups->len, INT16_MAX);
     FlDrawing *drawing = g_new0(FlDrawing, 1);
     *drawing = (FlDrawing){.sequence = sequence,
                            .dpi = options->dpi,

@@ -121,7 +121,7 @@ static bool add_fitting(GArray *found, const char *input, const FlPattern *patte
     }
     if (found->len == 0) {
         g_autofree char *hint = suggestion(names, base);
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: matches no file%s", input, hint);
+        fl_fail(error, FL_ERROR_INPUT, "%s: matches no file%s", input, hint);
     }
     return found->len > 0;
 }
@@ -203,8 +203,7 @@ static bool add_file(GArray *found, const char *input, GError **error)
         if (!names)
             return false;
         g_autofree char *hint = suggestion(names, base);
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no such file%s", input, hint);
-        return false;
+        return fl_fail(error, FL_ERROR_INPUT, "%s: no such file%s", input, hint);
     }
     const FlSequenceFrame f = {g_strdup(input)};
     g_array_append_val(found, f);
@@ -231,9 +230,8 @@ static bool check_kind(const char *input, GError **error)
         g_auto(GStrv) ends = g_strsplit(kinds[i].ends, " ", -1);
         if (!g_strv_contains((const char *const *)ends, end))
             continue;
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: is %s; see fluidy-exports(7)", input,
-                    kinds[i].what);
-        return false;
+        return fl_fail(error, FL_ERROR_INPUT, "%s: is %s; see fluidy-exports(7)", input,
+                       kinds[i].what);
     }
     return true;
 }
@@ -321,10 +319,9 @@ static bool split(GArray *found, const FlSequenceOptions *options, FlInnerFrames
         return true;
     if (found->len != 1) {
         static const char *const words[] = {"", "auto", "files", "layers", "pages", "time"};
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "‘frames-from’ %s: %u files; expected one that holds all frames",
-                    words[options->from], found->len);
-        return false;
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "‘frames-from’ %s: %u files; expected one that holds all frames",
+                       words[options->from], found->len);
     }
     g_autofree char *path = g_strdup(g_array_index(found, FlSequenceFrame, 0).file);
     if (!ask_for_frames(path, options, frames, error))
@@ -350,11 +347,9 @@ static bool no_number_twice(const GArray *found, GError **error)
 {
     for (guint i = 1; i < found->len; i++) {
         const FlSequenceFrame *a = &g_array_index(found, FlSequenceFrame, i - 1), *b = a + 1;
-        if (a->number == b->number) {
-            g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s and %s are both frame %d", a->file,
-                        b->file, a->number);
-            return false;
-        }
+        if (a->number == b->number)
+            return fl_fail(error, FL_ERROR_INPUT, "%s and %s are both frame %d", a->file, b->file,
+                           a->number);
     }
     return true;
 }
@@ -456,17 +451,13 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
     if (s->n == 0) {
         g_autoptr(GArray) numbers = numbers_of(found);
         g_autofree char *there = fl_range_text(numbers);
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: no file for frame%s %s; expected some of %s", pattern,
-                    gaps->len > 1 ? "s" : "", list, there);
-        return NULL;
+        return fl_none(error, FL_ERROR_INPUT, "%s: no file for frame%s %s; expected some of %s",
+                       pattern, gaps->len > 1 ? "s" : "", list, there);
     }
-    if (gaps->len > 0 && missing <= FL_MISSING_ERROR) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: no file for frame%s %s; use ‘missing’ hold or skip to go on without",
-                    pattern, gaps->len > 1 ? "s" : "", list);
-        return NULL;
-    }
+    if (gaps->len > 0 && missing <= FL_MISSING_ERROR)
+        return fl_none(error, FL_ERROR_INPUT,
+                       "%s: no file for frame%s %s; use ‘missing’ hold or skip to go on without",
+                       pattern, gaps->len > 1 ? "s" : "", list);
     if (gaps->len > 0)
         fl_warnings_add(warnings, pattern, -1, NULL, "no file for frame%s %s: %s",
                         gaps->len > 1 ? "s" : "", list,

@@ -1,5 +1,6 @@
 #include "drawing/survey.h"
 
+#include "base/error.h"
 #include "base/limits.h"
 #include "svg/normalise.h"
 #include "worker/verbs.h"
@@ -102,11 +103,9 @@ static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, GError **error
     g_array_unref(first.shapes);
     const double width = first.width, height = first.height;
     if (o->scale < 0 || o->width < 0 || o->height < 0 ||
-        (o->scale > 0 && (o->width > 0 || o->height > 0))) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "size: expected a width and a height, or a scale, above 0");
-        return false;
-    }
+        (o->scale > 0 && (o->width > 0 || o->height > 0)))
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "size: expected a width and a height, or a scale, above 0");
     survey->scale = o->scale > 0 ? o->scale : 1;
     if (o->width > 0 || o->height > 0)
         survey->scale = MIN(o->width > 0 ? o->width / width : INFINITY,
@@ -115,12 +114,10 @@ static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, GError **error
         survey->scale = MIN(survey->scale, o->most_side / MAX(width, height));
     const double w = MAX(1, round(width * survey->scale)),
                  h = MAX(1, round(height * survey->scale));
-    if (!(w <= FL_SURVEY_MOST_SIDE && h <= FL_SURVEY_MOST_SIDE)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                    "%s: a picture of %.0f x %.0f px; at most %d px on each side can be drawn",
-                    survey->sequence->frame[0].file, w, h, FL_SURVEY_MOST_SIDE);
-        return false;
-    }
+    if (!(w <= FL_SURVEY_MOST_SIDE && h <= FL_SURVEY_MOST_SIDE))
+        return fl_fail(error, FL_ERROR_LIMIT,
+                       "%s: a picture of %.0f x %.0f px; at most %d px on each side can be drawn",
+                       survey->sequence->frame[0].file, w, h, FL_SURVEY_MOST_SIDE);
     if (!fl_limit_check(FL_LIMIT_FRAME, w * h / 1e6, survey->sequence->frame[0].file, error))
         return false;
     survey->scale = cover_scale(survey->scale, width, height, w, h);

@@ -8,6 +8,7 @@
  *   finish_frame the flow smoothed along time [F21 App. A], direction, extent; into the spill
  */
 #include "base/alloc.h"
+#include "base/error.h"
 #include "guides/blur.h"
 #include "guides/direction.h"
 #include "guides/displacement.h"
@@ -296,12 +297,10 @@ static bool given_flow(Builder *b, int frame, const FlOutline *outline, float **
     for (int y = 0; y < box->height; y++)
         for (int x = 0; x < box->width; x++, out += 2) {
             const float *in = given + 2 * ((box->y + y) * (size_t)source->width + box->x + x);
-            if (!isfinite(in[0]) || !isfinite(in[1])) {
-                g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                            "the flow of frame %d is not a number at column %d, row %d", frame,
-                            box->x + x, box->y + y);
-                return false;
-            }
+            if (!isfinite(in[0]) || !isfinite(in[1]))
+                return fl_fail(error, FL_ERROR_INPUT,
+                               "the flow of frame %d is not a number at column %d, row %d", frame,
+                               box->x + x, box->y + y);
             if (fl_outline_contains(outline, box->x + x, box->y + y))
                 out[0] = in[0], out[1] = in[1];
         }

@@ -1,6 +1,7 @@
 #include "guides/flow_file.h"
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/file.h"
 #include "base/rect.h"
 
@@ -48,18 +49,14 @@ static uint32_t bits_of_float(float value)
 static bool check_flo_header(const char *path, const uint8_t *data, size_t bytes, int width,
                              int height, GError **error)
 {
-    if (bytes < FLO_HEADER_BYTES || float_of_bits(read_u32(data)) != flo_magic) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: not a .flo file: it does not start with PIEH", path);
-        return false;
-    }
+    if (bytes < FLO_HEADER_BYTES || float_of_bits(read_u32(data)) != flo_magic)
+        return fl_fail(error, FL_ERROR_INPUT, "%s: not a .flo file: it does not start with PIEH",
+                       path);
     const int32_t w = (int32_t)read_u32(data + 4), h = (int32_t)read_u32(data + 8);
-    if (w != width || h != height) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: the flow is %dx%d pixels, but the frames are %dx%d", path, w, h, width,
-                    height);
-        return false;
-    }
+    if (w != width || h != height)
+        return fl_fail(error, FL_ERROR_INPUT,
+                       "%s: the flow is %dx%d pixels, but the frames are %dx%d", path, w, h, width,
+                       height);
     return true;
 }
 
@@ -73,10 +70,9 @@ static bool check_component(const char *path, float value, size_t index, int wid
     if (fabsf(value) <= most_px)
         return true;
     const size_t pixel = index / 2;
-    g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                "%s: the flow at column %zu, row %zu is %g, expected a number of at most %g px",
-                path, pixel % width, pixel / width, value, most_px);
-    return false;
+    return fl_fail(error, FL_ERROR_INPUT,
+                   "%s: the flow at column %zu, row %zu is %g, expected a number of at most %g px",
+                   path, pixel % width, pixel / width, value, most_px);
 }
 
 bool fl_flow_load(const char *path, int width, int height, float unknown, float *flow,
@@ -86,23 +82,18 @@ bool fl_flow_load(const char *path, int width, int height, float unknown, float 
         return false;
     g_autoptr(GError) cause = NULL;
     g_autoptr(GMappedFile) file = g_mapped_file_new(path, FALSE, &cause);
-    if (!file) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot read the flow: %s", path,
-                    cause->message);
-        return false;
-    }
+    if (!file)
+        return fl_fail(error, FL_ERROR_INPUT, "%s: cannot read the flow: %s", path, cause->message);
     const bool flo = is_flo(path);
     const uint8_t *data = (const uint8_t *)g_mapped_file_get_contents(file);
     const size_t bytes = g_mapped_file_get_length(file), header = flo ? FLO_HEADER_BYTES : 0;
     const size_t n = 2 * (size_t)width * height, expected = header + n * sizeof(float);
     if (flo && !check_flo_header(path, data, bytes, width, height, error))
         return false;
-    if (bytes != expected) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: the flow has %zu bytes, expected %zu for %dx%d pixels", path, bytes,
-                    expected, width, height);
-        return false;
-    }
+    if (bytes != expected)
+        return fl_fail(error, FL_ERROR_INPUT,
+                       "%s: the flow has %zu bytes, expected %zu for %dx%d pixels", path, bytes,
+                       expected, width, height);
     for (size_t k = 0; k < n; k++) {
         flow[k] = float_of_bits(read_u32(data + header + k * sizeof(float)));
         if (!(flo && is_unknown(flow[k])) && !check_component(path, flow[k], k, width, error))
@@ -132,11 +123,9 @@ bool fl_flow_save(const char *path, int width, int height, const float *flow, GE
         write_u32(data + header + k * sizeof(float),
                   bits_of_float(isnan(flow[k]) ? flo_no_value : flow[k]));
     if (!g_file_set_contents_full(path, (const char *)data, (gssize)(header + n * sizeof(float)),
-                                  G_FILE_SET_CONTENTS_CONSISTENT, 0666, &cause)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot write the flow: %s", path,
-                    cause->message);
-        return false;
-    }
+                                  G_FILE_SET_CONTENTS_CONSISTENT, 0666, &cause))
+        return fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot write the flow: %s", path,
+                       cause->message);
     return true;
 }
 

@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "base/error.h"
 #include "guides/displacement.h"
 #include "guides/distance.h"
 #include "guides/extent.h"
@@ -59,12 +60,10 @@ FlGuideSequence *fl_guide_sequence_new(const FlGuideSource *source, const FlGuid
                                        GError **error)
 {
     g_assert(source->width >= 1 && source->height >= 1 && source->n_frames >= 0);
-    if (source->width > INT16_MAX || source->height > INT16_MAX) {
-        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                    "frames of %dx%d pixels are too large, at most %d are possible", source->width,
-                    source->height, INT16_MAX);
-        return NULL;
-    }
+    if (source->width > INT16_MAX || source->height > INT16_MAX)
+        return fl_none(error, FL_ERROR_LIMIT,
+                       "frames of %dx%d pixels are too large, at most %d are possible",
+                       source->width, source->height, INT16_MAX);
     g_autoptr(FlGuideSequence) sequence = g_new(FlGuideSequence, 1);
     *sequence = (FlGuideSequence){.source = *source, .params = *params};
     sequence->frames = g_new0(FlFrameRecord, source->n_frames);

@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "base/json.h"
 #include "job/plan.h"
 #include "params/options.h"
@@ -212,10 +213,9 @@ static bool is_text(const char *word)
 static bool refuse_word(const char *word, const char *dialect, GError **error)
 {
     g_autofree char *shown = g_strescape(word, NULL);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "“%s”: %s cannot hold this name; rename it, or plan for another scheduler", shown,
-                dialect);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE,
+                   "“%s”: %s cannot hold this name; rename it, or plan for another scheduler",
+                   shown, dialect);
 }
 
 /* Fails if a dialect cannot express a name exactly, since it would be read as another name. */
@@ -468,22 +468,18 @@ char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *cons
     whole.merge = true; // the merge's visible regions are painted
     whole.paint = options->paint ? options->paint : "{region}_%04d.png";
     if (options->only_region || options->merge || options->part || options->report ||
-        options->dump || options->ebsynth) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "a plan is of all regions and their merge; leave out ‘region’, ‘merge’, "
-                    "‘part’, ‘report’, ‘dump’ and ‘ebsynth’");
-        return NULL;
-    }
+        options->dump || options->ebsynth)
+        return fl_none(error, FL_ERROR_USAGE,
+                       "a plan is of all regions and their merge; leave out ‘region’, ‘merge’, "
+                       "‘part’, ‘report’, ‘dump’ and ‘ebsynth’");
     g_autoptr(FlPlan) plan = fl_plan_new(&whole, error);
     if (!plan)
         return NULL;
-    if (count_painted(plan) == 0) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: no region is painted, so that there is "
-                    "nothing to plan",
-                    fl_drawing_name(plan->shapes.drawing));
-        return NULL;
-    }
+    if (count_painted(plan) == 0)
+        return fl_none(error, FL_ERROR_USAGE,
+                       "%s: no region is painted, so that there is "
+                       "nothing to plan",
+                       fl_drawing_name(plan->shapes.drawing));
     Farm all = {.plan = plan,
                 .shot = fl_drawing_name(plan->shapes.drawing),
                 .folder = g_get_current_dir(),

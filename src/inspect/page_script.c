@@ -1,5 +1,6 @@
 #include "inspect/page_script.h"
 
+#include "base/error.h"
 #include "base/json.h"
 #include "io/png.h"
 #include "params/options.h"
@@ -66,10 +67,8 @@ bool fl_script_picture(GString *json, const char *name, const FlPicture *picture
                        .rgba = picture->rgba,
                        .opaque = opaque};
     g_autoptr(GBytes) bytes = fl_png_encode(&png);
-    if (!bytes) {
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for a picture");
-        return false;
-    }
+    if (!bytes)
+        return fl_fail(error, FL_ERROR_NO_MEMORY, "not enough memory for a picture");
     gsize n = 0;
     const guchar *data = g_bytes_get_data(bytes, &n);
     g_autofree char *text = g_base64_encode(data, n);

@@ -14,8 +14,7 @@
 
 void fl_output_error(GError **error, const char *path, int errno_value)
 {
-    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
-                g_strerror(errno_value));
+    fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path, g_strerror(errno_value));
 }
 
 /** Makes the folder and checks that the name is free. */
@@ -180,7 +179,7 @@ static int take(const char *path, bool folder, const char *what, GError **error)
             return fd;
         close(fd);
         if (locked) {
-            g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s: another run is writing it", what);
+            fl_fail(error, FL_ERROR_EXISTS, "%s: another run is writing it", what);
             return -1;
         }
     }

@@ -93,11 +93,9 @@ static FlChild *start(const char *const *arguments, FlChildStream stream, const 
     child->errors = nameless_file();
     int ends[2];
     /* A socket, not a pipe: writing after the reader has gone need not raise SIGPIPE. */
-    if (child->errors < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-        g_set_error(error, FL_ERROR, error_code(child), "%s: cannot be started: %s", arguments[0],
-                    g_strerror(errno));
-        return NULL;
-    }
+    if (child->errors < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+        return fl_none(error, error_code(child), "%s: cannot be started: %s", arguments[0],
+                       g_strerror(errno));
     child->ours = ends[0];
     const bool started = spawn(child, arguments, reads, ends[1], file, error);
     close(ends[1]);

@@ -1,6 +1,7 @@
 #include "io/control_map.h"
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "io/pattern.h"
 #include "io/picture_file.h"
 #include "io/picture_series.h"
@@ -29,10 +30,10 @@ FlControlMap *fl_control_map_open(const char *pattern, GError **error)
     if (!series)
         return NULL;
     if (!g_file_test(series->path[0], G_FILE_TEST_IS_REGULAR)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: there is no such file; expected a picture, or a pattern such as "
-                    "map_%%04d.png",
-                    pattern);
+        fl_fail(error, FL_ERROR_INPUT,
+                "%s: there is no such file; expected a picture, or a pattern such as "
+                "map_%%04d.png",
+                pattern);
         fl_series_free(series);
         return NULL;
     }

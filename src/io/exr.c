@@ -260,7 +260,7 @@ static bool chunk_init(Chunk *chunk, const Writer *writer, GError **error)
     if (mattes)
         chunk->mattes = (FlMatteRow){writer->width, mattes, mattes + width * FLOAT_CHANNELS};
     if (mattes && !chunk->compressor)
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to compress");
+        fl_fail(error, FL_ERROR_NO_MEMORY, "not enough memory to compress");
     return mattes && chunk->compressor;
 }
 
@@ -459,8 +459,8 @@ static bool exr_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
     if (problem)
         g_propagate_prefixed_error(error, problem, "%s: ", path);
     else if (!put)
-        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
-                    exr_get_default_error_message(writer.result));
+        fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
+                exr_get_default_error_message(writer.result));
     return put;
 }
 

@@ -41,11 +41,9 @@ static FlFfmpeg *start(const char *path, const char *kind, const char *before, c
     if (!fl_file_check(path, FL_ERROR_INPUT, error))
         return NULL;
     ffmpeg->child = fl_child_start_reader((const char *const *)arguments->pdata, path, &below);
-    if (!ffmpeg->child) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: cannot be read without the ffmpeg program: %s", path, below->message);
-        return NULL;
-    }
+    if (!ffmpeg->child)
+        return fl_none(error, FL_ERROR_INPUT, "%s: cannot be read without the ffmpeg program: %s",
+                       path, below->message);
     return g_steal_pointer(&ffmpeg);
 }
 
@@ -91,13 +89,12 @@ static bool end(const FlFfmpeg *ffmpeg, bool whole, GError **error)
     g_autofree char *words = fl_child_stderr_tail(ffmpeg->child);
     g_autofree char *cause = cause_of(words);
     if (strstr(words, "matches no streams"))
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: has no %s", ffmpeg->path, ffmpeg->kind);
+        fl_fail(error, FL_ERROR_INPUT, "%s: has no %s", ffmpeg->path, ffmpeg->kind);
     else
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be read as %s: %s", ffmpeg->path,
-                    ffmpeg->kind,
-                    well     ? "the last one is truncated"
-                    : *cause ? cause
-                             : below->message);
+        fl_fail(error, FL_ERROR_INPUT, "%s: cannot be read as %s: %s", ffmpeg->path, ffmpeg->kind,
+                well     ? "the last one is truncated"
+                : *cause ? cause
+                         : below->message);
     return false;
 }
 
@@ -163,7 +160,7 @@ FlPicture *fl_ffmpeg_picture(const char *path, GError **error)
     if (below)
         g_propagate_error(error, g_steal_pointer(&below));
     else if (!picture && ffmpeg)
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: contains no picture", path);
+        fl_fail(error, FL_ERROR_INPUT, "%s: contains no picture", path);
     return picture;
 }
 

@@ -166,11 +166,9 @@ char *fl_output_name(const char *text, int number, const char *region, GError **
     g_autofree char *name = name_of(&pattern, number);
     if (!strstr(name, "{region}"))
         return g_steal_pointer(&name);
-    if (!region) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: {region} is allowed in the names of layers only", text);
-        return NULL;
-    }
+    if (!region)
+        return fl_none(error, FL_ERROR_USAGE, "%s: {region} is allowed in the names of layers only",
+                       text);
     g_auto(GStrv) parts = g_strsplit(name, "{region}", -1);
     return g_strjoinv(region, parts);
 }

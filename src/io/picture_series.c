@@ -96,9 +96,8 @@ static GArray *list_names(const char *folder, const FlPattern *wanted, const cha
     g_autoptr(GDir) dir = g_dir_open(folder, 0, &below);
     if (!dir) {
         const bool no_match = wanted && g_error_matches(below, G_FILE_ERROR, G_FILE_ERROR_NOENT);
-        g_set_error(error, FL_ERROR, no_match ? FL_ERROR_INPUT : FL_ERROR_STYLE,
-                    "%s: cannot be read: %s", folder, below->message);
-        return NULL;
+        return fl_none(error, no_match ? FL_ERROR_INPUT : FL_ERROR_STYLE, "%s: cannot be read: %s",
+                       folder, below->message);
     }
     GArray *names = g_array_new(FALSE, FALSE, sizeof(Name));
     g_array_set_clear_func(names, clear_name);
@@ -134,16 +133,14 @@ FlSeries *fl_series_of_pattern(const char *text, GError **error)
     g_auto(FlPattern) pattern = {0};
     if (!fl_pattern_parse(base, &pattern, error))
         return NULL;
-    if (pattern.width == 0) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: expected a pattern with a number, such as paint_%%04d.png", text);
-        return NULL;
-    }
+    if (pattern.width == 0)
+        return fl_none(error, FL_ERROR_INPUT,
+                       "%s: expected a pattern with a number, such as paint_%%04d.png", text);
     g_autoptr(GArray) names = list_names(folder, &pattern, NULL, error);
     if (names && names->len > 0)
         return make_series((const Name *)names->data, (int)names->len);
     if (names)
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: matches no file", text);
+        fl_fail(error, FL_ERROR_INPUT, "%s: matches no file", text);
     return NULL;
 }
 

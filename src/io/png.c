@@ -242,11 +242,9 @@ FlPicture *fl_picture_read_png(const char *path, GError **error)
     png_image png = {.version = PNG_IMAGE_VERSION};
     if (!fl_file_check(path, FL_ERROR_INPUT, error))
         return NULL;
-    if (!png_image_begin_read_from_file(&png, path)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be read as a PNG picture: %s",
-                    path, png.message);
-        return NULL;
-    }
+    if (!png_image_begin_read_from_file(&png, path))
+        return fl_none(error, FL_ERROR_INPUT, "%s: cannot be read as a PNG picture: %s", path,
+                       png.message);
     png.format = PNG_FORMAT_RGBA;
     png.flags |= PNG_IMAGE_FLAG_16BIT_sRGB; // else 16-bit files without gAMA count as linear
     g_autoptr(FlPicture) picture = png.width > INT32_MAX || png.height > INT32_MAX
@@ -255,8 +253,7 @@ FlPicture *fl_picture_read_png(const char *path, GError **error)
     if (!picture)
         g_prefix_error(error, "%s: ", path);
     else if (!png_image_finish_read(&png, NULL, picture->rgba, 0, NULL)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: a damaged PNG picture: %s", path,
-                    png.message);
+        fl_fail(error, FL_ERROR_INPUT, "%s: a damaged PNG picture: %s", path, png.message);
         g_clear_pointer(&picture, fl_picture_free);
     }
     png_image_free(&png);

@@ -1,5 +1,6 @@
 #include "io/sink.h"
 
+#include "base/error.h"
 #include "base/suggest.h"
 #include "config.h"
 #include "io/pattern.h"
@@ -111,11 +112,11 @@ static void no_format(const char *name, const char *path, GError **error)
     g_autofree char *list = g_strjoinv(", ", (char **)words);
     const char *dot = name ? NULL : strrchr(path, '.');
     g_autofree char *hint = fl_did_you_mean(name ? name : dot ? dot + 1 : path, words);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                name ? "%s: unknown output format; expected one of %s%s"
-                     : "%s: the end of the name means no output format; expected one of %s, "
-                       "or a folder, which ends with /%s",
-                name ? name : path, list, hint);
+    fl_fail(error, FL_ERROR_USAGE,
+            name ? "%s: unknown output format; expected one of %s%s"
+                 : "%s: the end of the name means no output format; expected one of %s, "
+                   "or a folder, which ends with /%s",
+            name ? name : path, list, hint);
 }
 
 const FlSinkFormat *fl_sink_format(const char *name, const char *path, GError **error)

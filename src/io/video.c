@@ -123,10 +123,8 @@ static FlChild *start_ffmpeg(const FlSink *sink, int sound, GError **error)
     fl_arguments_add(arguments, "file:" FL_CHILD_FILE);
     g_ptr_array_add(arguments, NULL);
     const int fd = open(sink->file.temporary, O_RDWR | O_CLOEXEC);
-    if (fd < 0) {
-        g_set_error_literal(error, FL_ERROR, FL_ERROR_OUTPUT, g_strerror(errno));
-        return NULL;
-    }
+    if (fd < 0)
+        return fl_none(error, FL_ERROR_OUTPUT, "%s", g_strerror(errno));
     FlChild *child = fl_child_start((const char *const *)arguments->pdata, FL_CHILD_INPUT, fd,
                                     &sink->params.patience, error);
     close(fd);

@@ -56,10 +56,9 @@ static bool find_camera(FlShapes *shapes, const char *wanted, GError **error)
     }
     if (shapes->camera >= 0 || none || found)
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "camera “%s”: there is no such region; expected auto, none or the name of one",
-                wanted);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE,
+                   "camera “%s”: there is no such region; expected auto, none or the name of one",
+                   wanted);
 }
 
 bool fl_shapes_find_ground(FlShapes *shapes, const char *camera, GError **error)

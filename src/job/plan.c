@@ -89,7 +89,7 @@ static bool check_options(const FlRenderOptions *options, GError **error)
     else if (options->part && !options->merge)
         wrong = "‘part’ needs ‘merge’; to paint some of the frames use ‘frames’";
     if (wrong)
-        g_set_error_literal(error, FL_ERROR, FL_ERROR_USAGE, wrong);
+        fl_fail(error, FL_ERROR_USAGE, "%s", wrong);
     return !wrong;
 }
 

@@ -143,12 +143,12 @@ static bool choose_part(FlPlan *plan, GError **error)
     const char *part = plan->options.part;
     const bool of_film = is_of_film(part);
     if (of_film && !plan->out.movie)
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: ‘part’ film needs a film as output; use a name such as walk.mov",
-                    plan->out.output);
+        fl_fail(error, FL_ERROR_USAGE,
+                "%s: ‘part’ film needs a film as output; use a name such as walk.mov",
+                plan->out.output);
     else if (plan->out.format->film)
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: has no parts; leave out ‘part’ or ‘no-frames’", plan->out.output);
+        fl_fail(error, FL_ERROR_USAGE, "%s: has no parts; leave out ‘part’ or ‘no-frames’",
+                plan->out.output);
     else if (!of_film)
         g_clear_pointer(&plan->out.movie, g_free);
     return of_film ? plan->out.movie != NULL : !plan->out.format->film;

@@ -20,10 +20,9 @@ static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
     g_autofree char *list = g_strjoinv(", ", (char **)names->pdata);
     g_autofree char *hint = fl_did_you_mean(name, (const char *const *)names->pdata);
     if (*hint)
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "no region “%s”%s", name, hint);
+        fl_fail(error, FL_ERROR_USAGE, "no region “%s”%s", name, hint);
     else
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "no region “%s”; the regions are: %s", name,
-                    list);
+        fl_fail(error, FL_ERROR_USAGE, "no region “%s”; the regions are: %s", name, list);
     return false;
 }
 

@@ -56,9 +56,9 @@ static bool find_record(FlResume *resume, const FlPlan *plan, const FlFacts *fac
     if (!record)
         g_propagate_error(error, g_steal_pointer(&problem));
     else
-        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
-                    "%s: an earlier run painted %d frames, but %s; use ‘overwrite’ to start anew",
-                    plan->out.output, record->done, difference);
+        fl_fail(error, FL_ERROR_CHANGED,
+                "%s: an earlier run painted %d frames, but %s; use ‘overwrite’ to start anew",
+                plan->out.output, record->done, difference);
     return false;
 }
 
@@ -70,22 +70,21 @@ static bool frame_is_free(const FlPlan *plan, const char *file, GError **error)
     if (fl_check_not_exists(file, plan->out.movie ? NULL : error))
         return true;
     if (plan->out.movie)
-        g_set_error(error, FL_ERROR, FL_ERROR_EXISTS,
-                    "%s: already exists, a frame of an earlier film; use ‘overwrite’ to replace "
-                    "its frames, ‘no-frames’ to write none, or another name",
-                    file);
+        fl_fail(error, FL_ERROR_EXISTS,
+                "%s: already exists, a frame of an earlier film; use ‘overwrite’ to replace "
+                "its frames, ‘no-frames’ to write none, or another name",
+                file);
     return false;
 }
 
 static bool refuse_frame(const FlPlan *plan, const char *file, const char *but, GError **error)
 {
     if (plan->options.part && !g_file_test(file, G_FILE_TEST_EXISTS))
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: there is no such frame; ‘merge’ its ‘part’ first", file);
+        fl_fail(error, FL_ERROR_INPUT, "%s: there is no such frame; ‘merge’ its ‘part’ first",
+                file);
     else
-        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
-                    "%s: an earlier run painted it, but %s; use ‘overwrite’ to start anew", file,
-                    but);
+        fl_fail(error, FL_ERROR_CHANGED,
+                "%s: an earlier run painted it, but %s; use ‘overwrite’ to start anew", file, but);
     return false;
 }
 
@@ -530,8 +529,8 @@ bool fl_resume_verify(const FlPlan *plan, GError **error)
     if (verify.n_wrong > 0 && facts)
         note_cause(plan, facts);
     if (verify.n_wrong > 0)
-        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
-                    "%d of %d files are not as they would be made now", verify.n_wrong, verify.n);
+        fl_fail(error, FL_ERROR_CHANGED, "%d of %d files are not as they would be made now",
+                verify.n_wrong, verify.n);
     else
         fl_note(&plan->caller, "all %d files are as they would be made now", verify.n);
     return verify.n_wrong == 0;

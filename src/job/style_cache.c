@@ -271,7 +271,7 @@ static char *kept_at(const FlStyle *style, const char *recipe_path, int size, GE
     gsize bytes = 0;
     GError *problem = NULL;
     if (!g_file_get_contents(recipe_path, &text, &bytes, &problem)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", problem->message);
+        fl_fail(error, FL_ERROR_INPUT, "%s", problem->message);
         g_error_free(problem);
         return NULL;
     }

@@ -236,14 +236,10 @@ static char *load(const char *path, const FlKeyReader *reader, GError **error)
     size_t bytes = text ? strlen(text) : 0;
     if (!text && !fl_file_read(path, LARGEST_BYTES, reader->wait, &text, &bytes, error))
         return NULL;
-    if (bytes > LARGEST_BYTES) {
-        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT, "%s: the file is larger than 1 MiB", path);
-        return NULL;
-    }
-    if (!g_utf8_validate(text, (gssize)bytes, NULL)) {
-        g_set_error(error, FL_ERROR, (int)reader->mistake, "%s: the file is not UTF-8 text", path);
-        return NULL;
-    }
+    if (bytes > LARGEST_BYTES)
+        return fl_none(error, FL_ERROR_LIMIT, "%s: the file is larger than 1 MiB", path);
+    if (!g_utf8_validate(text, (gssize)bytes, NULL))
+        return fl_none(error, (int)reader->mistake, "%s: the file is not UTF-8 text", path);
     return g_steal_pointer(&text);
 }
 

@@ -358,9 +358,8 @@ static const Variant *find_method(const char *word, GError **error)
     }
     g_autofree char *hint = fl_did_you_mean(name, names);
     g_autofree char *all = g_strjoinv(", ", (char **)names);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "no method is called “%s”; there are %s%s", name,
-                all, hint);
-    return NULL;
+    return fl_none(error, FL_ERROR_USAGE, "no method is called “%s”; there are %s%s", name, all,
+                   hint);
 }
 
 /* NAME, or NAME:KEY=VALUE… for a method with something changed; `parts` keeps the strings. */
@@ -375,13 +374,11 @@ static bool read_method(const char *text, char **parts, Variant *variant, GError
         variant->setting[0].value = parts[0];
     for (int k = 1; parts[k]; k++) {
         char *value = strchr(parts[k], '=');
-        if (!value || variant->n == SETTINGS_MOST) {
-            g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                        "%s: expected at most %d of KEY=VALUE after the method, such as "
-                        "lazyfluids:w-uni=0",
-                        text, SETTINGS_MOST - 1);
-            return false;
-        }
+        if (!value || variant->n == SETTINGS_MOST)
+            return fl_fail(error, FL_ERROR_USAGE,
+                           "%s: expected at most %d of KEY=VALUE after the method, such as "
+                           "lazyfluids:w-uni=0",
+                           text, SETTINGS_MOST - 1);
         *value++ = '\0';
         variant->setting[variant->n++] = (FlSetting){.name = parts[k], .value = value};
     }

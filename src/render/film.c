@@ -2,6 +2,7 @@
 #include <fluidy/film.h>
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/limits.h"
 #include "base/schedule.h"
 #include "base/suggest.h"
@@ -87,8 +88,7 @@ static bool no_such_option(const char *name, GError **error)
             g_ptr_array_add(names, (gpointer)fl_option_at(i)->name);
     g_ptr_array_add(names, NULL);
     g_autofree char *hint = fl_did_you_mean(name, (const char *const *)names->pdata);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "no option “%s”%s", name, hint);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE, "no option “%s”%s", name, hint);
 }
 
 static bool set_of_film(FlFilm *film, const FlOption *option, const char *value, GError **error)
@@ -272,7 +272,7 @@ static bool work_on(FlFilm *film, Take *take, int frame, Work work, GError **err
     bool done = settle(film, take, error);
     const int n = done ? fl_drawing_frames(take->frames.plan->shapes.drawing) : 0;
     if (done && (frame < 0 || frame >= n)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "frame %d: expected 0 to %d", frame, n - 1);
+        fl_fail(error, FL_ERROR_USAGE, "frame %d: expected 0 to %d", frame, n - 1);
         done = false;
     }
     done = done && (!work || work(film, take, frame, error));

@@ -34,9 +34,8 @@ bool fl_frames_tell(const FlFrames *frames, const char *stage, int done, double 
         progress.remaining_s = fl_seconds_since(frames->first_frame) / painted * (total - made);
     if (!o->progress || o->progress(&progress, o->data))
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted after %d of %d frames; %s",
-                made, total, frames->advice);
-    return false;
+    return fl_fail(error, FL_ERROR_INTERRUPTED, "interrupted after %d of %d frames; %s", made,
+                   total, frames->advice);
 }
 
 /* ---- painting -------------------------------------------------------------------------------- */

@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/limits.h"
 #include "base/page.h"
 #include "base/schedule.h"
@@ -30,15 +31,13 @@ typedef struct GivenRegion {
 
 static bool refuse(GError **error, const char *what)
 {
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "fl_paint_region(): %s", what);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE, "fl_paint_region(): %s", what);
 }
 
 static bool stopped(GError **error, const char *call, int frame)
 {
-    g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "%s() stopped the painting at frame %d",
-                call, frame);
-    return false;
+    return fl_fail(error, FL_ERROR_INTERRUPTED, "%s() stopped the painting at frame %d", call,
+                   frame);
 }
 
 /* Fields after `threads` are of later versions: a program may be older than they are. */
@@ -83,14 +82,13 @@ static bool flow_of(void *data, const FlRegionPlan *plan, int frame, float unkno
     for (size_t k = 0; k < values; k++) {
         if (isnan(flow[k ^ 1]) || isnan(flow[k]))
             flow[k] = flow[k ^ 1] = unknown;
-        else if (!(fabsf(flow[k]) <= MOST_PX)) {
-            g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                        "flow() of frame %d: %g at x = %zu, y = %zu; expected -100000 to 100000, "
-                        "or NAN",
-                        frame, (double)flow[k], k / 2 % (size_t)region->width,
-                        k / 2 / (size_t)region->width);
-            return false;
-        }
+        else if (!(fabsf(flow[k]) <= MOST_PX))
+            return fl_fail(
+                error, FL_ERROR_INPUT,
+                "flow() of frame %d: %g at x = %zu, y = %zu; expected -100000 to 100000, "
+                "or NAN",
+                frame, (double)flow[k], k / 2 % (size_t)region->width,
+                k / 2 / (size_t)region->width);
     }
     return true;
 }

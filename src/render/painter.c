@@ -279,11 +279,9 @@ static bool take_picture(FlPainter *painter, int k, GError **error)
         return false;
     if (fl_reuse_take(reuse, result->painted, fl_painted_bytes(result)))
         result->from = FL_FROM_CACHE;
-    else if (result->from == FL_FROM_CACHE) {
-        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
-                    "region %s: its paint is gone from the cache", painter->plan->name);
-        return false;
-    }
+    else if (result->from == FL_FROM_CACHE)
+        return fl_fail(error, FL_ERROR_CHANGED, "region %s: its paint is gone from the cache",
+                       painter->plan->name);
     return true;
 }
 

@@ -102,18 +102,13 @@ static bool find_sizes(const FlStyle *style, const FlStyleUse *use, FlStyle *out
     out->height = (int)lround(style->height * scale);
     out->n_frames = use->frames > 0 ? MIN(use->frames, left) : left;
     out->border_px = (float)(style->border_px * scale);
-    if (use->start > style->n_frames) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: style-start is %d, but the style has %d frames", style->path, use->start,
-                    style->n_frames);
-        return false;
-    }
-    if (out->width < SMALLEST || out->height < SMALLEST) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: scaled by %g its frames are %dx%d pixels; expected at least %dx%d",
-                    style->path, scale, out->width, out->height, SMALLEST, SMALLEST);
-        return false;
-    }
+    if (use->start > style->n_frames)
+        return fl_fail(error, FL_ERROR_USAGE, "%s: style-start is %d, but the style has %d frames",
+                       style->path, use->start, style->n_frames);
+    if (out->width < SMALLEST || out->height < SMALLEST)
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "%s: scaled by %g its frames are %dx%d pixels; expected at least %dx%d",
+                       style->path, scale, out->width, out->height, SMALLEST, SMALLEST);
     return true;
 }
 

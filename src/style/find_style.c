@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "style/style_folder.h"
 
 #include "base/file.h"
@@ -171,15 +172,15 @@ static void set_not_found(const GPtrArray *entries, const char *name, GError **e
     for (size_t i = 0; i < G_N_ELEMENTS(retired); i++)
         if (fl_edit_distance(name, retired[i].number) == 0 ||
             fl_edit_distance(name, retired[i].title) == 0) {
-            g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
-                        "style %s, %s, does not come with the program any more: take %s",
-                        retired[i].number, retired[i].title, retired[i].instead);
+            fl_fail(error, FL_ERROR_STYLE,
+                    "style %s, %s, does not come with the program any more: take %s",
+                    retired[i].number, retired[i].title, retired[i].instead);
             return;
         }
     g_auto(GStrv) folders = fl_style_folders();
     g_autofree char *where = g_strjoinv(", ", folders);
     g_autofree char *others = other_names(entries, name);
-    g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "no style “%s” in %s%s", name, where, others);
+    fl_fail(error, FL_ERROR_STYLE, "no style “%s” in %s%s", name, where, others);
 }
 
 /* The first style whose folder has the name, which is found without the others' titles; NULL: none
@@ -200,8 +201,7 @@ char *fl_style_find(const char *name, GError **error)
     if (strchr(name, G_DIR_SEPARATOR) || fl_is_style(name)) {
         if (g_file_test(name, G_FILE_TEST_IS_DIR))
             return g_strdup(name);
-        g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s: no such folder: expected a style", name);
-        return NULL;
+        return fl_none(error, FL_ERROR_STYLE, "%s: no such folder: expected a style", name);
     }
     char *path = named_folder(name);
     if (path)

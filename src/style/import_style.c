@@ -1,4 +1,5 @@
 /* Imports a recording as a style: read, find paper and paint, stabilise, flatten, write. */
+#include "base/error.h"
 #include "base/memory.h"
 #include "io/ffmpeg.h"
 #include "params/text.h"
@@ -53,7 +54,7 @@ static bool check_options(const FlStyleImport *options, uint8_t paper[3], GError
     else if (options->paper && !fl_text_colour(options->paper, paper))
         wrong = "the paper must be a colour such as #f4efe6";
     if (wrong)
-        g_set_error_literal(error, FL_ERROR, FL_ERROR_USAGE, wrong);
+        fl_fail(error, FL_ERROR_USAGE, "%s", wrong);
     return !wrong;
 }
 

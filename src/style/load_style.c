@@ -31,8 +31,7 @@ void fl_style_free(FlStyle *style)
 
 static bool broken(GError **error, const char *path, const char *what)
 {
-    g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s: %s", path, what);
-    return false;
+    return fl_fail(error, FL_ERROR_STYLE, "%s: %s", path, what);
 }
 
 /* The folder's only series of files with this ending, without gaps, such as frames/0001.png ... */
@@ -67,9 +66,8 @@ static bool check_size(const FlPicture *picture, const FlStyle *style, const cha
 {
     if (picture->width == style->width && picture->height == style->height)
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s: %dx%d pixels: expected %dx%d as in %s", path,
-                picture->width, picture->height, style->width, style->height, first);
-    return false;
+    return fl_fail(error, FL_ERROR_STYLE, "%s: %dx%d pixels: expected %dx%d as in %s", path,
+                   picture->width, picture->height, style->width, style->height, first);
 }
 
 static FlPicture *read_picture(const char *path, GError **error)
@@ -124,12 +122,10 @@ static bool read_masks(FlStyle *style, const char *folder, const FlSeries *frame
     g_autoptr(FlSeries) series = only_series(folder, ".png", error);
     if (!series)
         return false;
-    if (series->n != frames->n) {
-        g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
-                    "%s: %d masks for %d frames: expected one mask for each frame", folder,
-                    series->n, frames->n);
-        return false;
-    }
+    if (series->n != frames->n)
+        return fl_fail(error, FL_ERROR_STYLE,
+                       "%s: %d masks for %d frames: expected one mask for each frame", folder,
+                       series->n, frames->n);
     style->guessed &= ~(unsigned)FL_GUESS_MASK;
     return read_pictures(style, series, 0, frames->path[0], fl_style_store_mask, error);
 }
@@ -169,12 +165,10 @@ static bool read_flow(FlStyle *style, const char *folder, GError **error)
     const int least = MAX(1, style->n_frames - 1);
     if (!series)
         return false;
-    if (series->n < least || series->n > style->n_frames) {
-        g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
-                    "%s: %d flow fields for %d frames: expected one for each frame", folder,
-                    series->n, style->n_frames);
-        return false;
-    }
+    if (series->n < least || series->n > style->n_frames)
+        return fl_fail(error, FL_ERROR_STYLE,
+                       "%s: %d flow fields for %d frames: expected one for each frame", folder,
+                       series->n, style->n_frames);
     style->flow = fl_alloc(pixels * style->n_frames, 2 * sizeof(float), "the flow", error);
     for (int i = 0; i < style->n_frames; i++) {
         const char *path = series->path[MIN(i, series->n - 1)];

@@ -1,6 +1,7 @@
 #include "style/paint_frames.h"
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/limits.h"
 #include "style/manifest.h"
 
@@ -92,6 +93,6 @@ bool fl_style_check_paint(const FlStyle *style, GError **error)
                                100.0 * (double)painted / (double)inside, style->paper[0],
                                style->paper[1], style->paper[2]);
     if (what)
-        g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s: %s", style->path, what);
+        fl_fail(error, FL_ERROR_STYLE, "%s: %s", style->path, what);
     return !what;
 }

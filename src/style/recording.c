@@ -1,5 +1,6 @@
 #include "style/recording.h"
 
+#include "base/error.h"
 #include "base/limits.h"
 #include "io/ffmpeg.h"
 #include "io/pattern.h"
@@ -56,14 +57,12 @@ static bool take_series(GPtrArray *all, bool masks, const char *folder, FlSeries
         FlSeries *series = g_ptr_array_index(all, i);
         if (is_mask_series(series) != masks)
             continue;
-        if (*found) {
-            g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                        "%s: two series of pictures, %s and %s: expected one; name it with a "
-                        "pattern such as %s%%0%dd%s",
-                        folder, (*found)->path[0], series->path[0], series->prefix, series->digits,
-                        series->suffix);
-            return false;
-        }
+        if (*found)
+            return fl_fail(error, FL_ERROR_INPUT,
+                           "%s: two series of pictures, %s and %s: expected one; name it with a "
+                           "pattern such as %s%%0%dd%s",
+                           folder, (*found)->path[0], series->path[0], series->prefix,
+                           series->digits, series->suffix);
         *found = series;
     }
     guint index;
@@ -80,11 +79,9 @@ static FlRecording *open_folder(const char *folder, bool want_masks, GError **er
         return NULL;
     if (!series && want_masks && !take_series(all, false, folder, &series, error))
         return NULL;
-    if (!series) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: no numbered pictures: expected files such as paint_0001.png", folder);
-        return NULL;
-    }
+    if (!series)
+        return fl_none(error, FL_ERROR_INPUT,
+                       "%s: no numbered pictures: expected files such as paint_0001.png", folder);
     return new_source(folder, series);
 }
 
@@ -127,8 +124,7 @@ FlRecording *fl_recording_open(const char *path, FlRecording **masks, GError **e
         FlSeries *series = fl_series_of_pattern(path, error);
         return series ? new_source(path, series) : NULL;
     }
-    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no such file or folder", path);
-    return NULL;
+    return fl_none(error, FL_ERROR_INPUT, "%s: no such file or folder", path);
 }
 
 /* The frames read so far, and the size that all must have. */
@@ -147,12 +143,10 @@ static bool choose_size(Reader *reader, const FlPicture *first, const char *path
     const int width = crop[2] ? crop[2] : first->width;
     const int height = crop[2] ? crop[3] : first->height;
     if (crop[2] && (crop[0] < 0 || crop[1] < 0 || width < 1 || height < 1 ||
-                    width > first->width - crop[0] || height > first->height - crop[1])) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: the crop %dx%d+%d+%d leaves the frame, which is %dx%d", path, width,
-                    height, crop[0], crop[1], first->width, first->height);
-        return false;
-    }
+                    width > first->width - crop[0] || height > first->height - crop[1]))
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "%s: the crop %dx%d+%d+%d leaves the frame, which is %dx%d", path, width,
+                       height, crop[0], crop[1], first->width, first->height);
     const double fit = MIN(1, (double)LARGEST_SIDE / MAX(width, height));
     const double scale = reader->import->scale > 0 ? reader->import->scale : fit;
     reader->width = MAX(1, (int)round(width * scale));
@@ -175,12 +169,10 @@ static bool add_picture(Reader *reader, const FlPicture *whole, const char *path
     const int *crop = reader->import->crop;
     if (reader->pictures->len == 0 && !choose_size(reader, whole, path, error))
         return false;
-    if (whole->width != reader->source->width || whole->height != reader->source->height) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: %dx%d pixels: expected %dx%d as in the first frame", path, whole->width,
-                    whole->height, reader->source->width, reader->source->height);
-        return false;
-    }
+    if (whole->width != reader->source->width || whole->height != reader->source->height)
+        return fl_fail(error, FL_ERROR_INPUT,
+                       "%s: %dx%d pixels: expected %dx%d as in the first frame", path, whole->width,
+                       whole->height, reader->source->width, reader->source->height);
     if (!within_limit(reader, (int)reader->pictures->len + 1, error))
         return false;
     g_autoptr(FlPicture) part =
@@ -226,10 +218,8 @@ static bool read_series(Reader *reader, GError **error)
     }
     if (expected <= last) {
         g_autofree char *missing = fl_series_path(series, expected);
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s is missing: there are %d files from %d to %d", missing, series->n,
-                    series->number[0], series->number[series->n - 1]);
-        return false;
+        return fl_fail(error, FL_ERROR_INPUT, "%s is missing: there are %d files from %d to %d",
+                       missing, series->n, series->number[0], series->number[series->n - 1]);
     }
     return true;
 }
@@ -258,9 +248,8 @@ static bool read_video(Reader *reader, GError **error)
     const int n = (int)reader->pictures->len;
     if (!import->last || n == (import->last - first) / import->step + 1)
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: ends before frame %d, after %d frames",
-                reader->source->path, import->last, n);
-    return false;
+    return fl_fail(error, FL_ERROR_INPUT, "%s: ends before frame %d, after %d frames",
+                   reader->source->path, import->last, n);
 }
 
 GPtrArray *fl_recording_read(FlRecording *source, const FlStyleImport *import, GError **error)
@@ -269,9 +258,7 @@ GPtrArray *fl_recording_read(FlRecording *source, const FlStyleImport *import, G
     Reader reader = {.source = source, .import = import, .pictures = pictures};
     if (!(source->series ? read_series : read_video)(&reader, error))
         return NULL;
-    if (pictures->len == 0) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no frame is selected", source->path);
-        return NULL;
-    }
+    if (pictures->len == 0)
+        return fl_none(error, FL_ERROR_INPUT, "%s: no frame is selected", source->path);
     return g_steal_pointer(&pictures);
 }

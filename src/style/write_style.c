@@ -22,14 +22,12 @@ bool fl_style_may_write(const char *folder, bool overwrite, GError **error)
     }
     if (!g_file_test(folder, G_FILE_TEST_EXISTS) || g_file_test(folder, G_FILE_TEST_IS_DIR))
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: is a file: expected a folder", folder);
-    return false;
+    return fl_fail(error, FL_ERROR_OUTPUT, "%s: is a file: expected a folder", folder);
 }
 
 static bool failed(GError **error, const char *path, const char *what)
 {
-    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: %s: %s", path, what, g_strerror(errno));
-    return false;
+    return fl_fail(error, FL_ERROR_OUTPUT, "%s: %s: %s", path, what, g_strerror(errno));
 }
 
 static bool write_planes(const char *folder, const uint8_t *data, const FlStyle *style,
@@ -62,9 +60,7 @@ static bool write_parts(const FlStyle *style, const char *folder, GError **error
         return false;
     if (g_file_set_contents(manifest, text, -1, &below))
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", manifest,
-                below->message);
-    return false;
+    return fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot be written: %s", manifest, below->message);
 }
 
 /* Puts each finished part in the place of the old one. */

@@ -302,7 +302,7 @@ static xmlDoc *parse_leniently(const char *data, gsize bytes, const char *path, 
         fl_warnings_add(warnings, path, number, NULL,
                         "ignored the text before <svg>, which is not XML (%s)", problem);
     if (!doc)
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: not well-formed: %s", path, problem);
+        fl_fail(error, FL_ERROR_INPUT, "%s: not well-formed: %s", path, problem);
     return doc;
 }
 
@@ -470,12 +470,9 @@ xmlDoc *fl_document_parse(const char *text, size_t bytes, const char *path, int 
         set_namespace(root, xmlNewNs(root, (const xmlChar *)FL_SVG_NAMESPACE, NULL));
         fl_warnings_add(warnings, path, number, NULL, "no xmlns on <svg>; read as SVG");
     }
-    if (!root || !fl_is(root, "svg")) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: the root is <%s>, expected <svg xmlns=\"%s\">", path,
-                    root ? (const char *)root->name : "", FL_SVG_NAMESPACE);
-        return NULL;
-    }
+    if (!root || !fl_is(root, "svg"))
+        return fl_none(error, FL_ERROR_INPUT, "%s: the root is <%s>, expected <svg xmlns=\"%s\">",
+                       path, root ? (const char *)root->name : "", FL_SVG_NAMESPACE);
     g_autoptr(GHashTable) entities = g_hash_table_new_full(NULL, NULL, NULL, g_free);
     Visit visit = {path, number, warnings, root, 0, 0, entities};
     return visit_node(&visit, root, 1, error) ? g_steal_pointer(&doc) : NULL;

@@ -193,14 +193,13 @@ static bool frames_in_time(xmlDoc *doc, const char *path, const FlMoments *momen
     const double n = round((end - moments->from) * moments->fps);
     frames->n = (int)CLAMP(n, 1, FL_MOST_INNER_FRAMES);
     if (frames->seconds == 0 && !(moments->to > 0))
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: nothing in it moves by SMIL or CSS; what a script moves is not played: "
-                    "save a file for each frame",
-                    path);
+        fl_fail(error, FL_ERROR_INPUT,
+                "%s: nothing in it moves by SMIL or CSS; what a script moves is not played: "
+                "save a file for each frame",
+                path);
     else if (moments->from >= end)
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: its film is %.3g s long, and ‘from’ begins at %.3g s", path, end,
-                    moments->from);
+        fl_fail(error, FL_ERROR_USAGE, "%s: its film is %.3g s long, and ‘from’ begins at %.3g s",
+                path, end, moments->from);
     else
         return true;
     return false;
@@ -243,8 +242,8 @@ bool fl_inner_frames(xmlDoc *doc, const char *path, FlFramesFrom from, const FlM
     case FL_FRAMES_PAGES:
         frames->n = pages;
         if (pages < 1)
-            g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                        "%s: no pages; expected those of Inkscape or the frames of FBF.SVG", path);
+            fl_fail(error, FL_ERROR_INPUT,
+                    "%s: no pages; expected those of Inkscape or the frames of FBF.SVG", path);
         return pages >= 1;
     case FL_FRAMES_TIME:
         if (frames_in_time(doc, path, moments, frames, error))

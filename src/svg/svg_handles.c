@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "svg/svg_data.h"
 #include <string.h>
 
@@ -23,7 +24,7 @@ void fl_svg_set_error(const FlSvg *svg, const GError *reason, GError **error)
 {
     g_autofree char *text = g_strchomp(g_strdup(reason ? reason->message : "unknown error"));
     const char *message = plain_words(text);
-    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be drawn: %s", svg->path, message);
+    fl_fail(error, FL_ERROR_INPUT, "%s: cannot be drawn: %s", svg->path, message);
 }
 
 RsvgHandle *fl_svg_make_handle(const FlSvg *svg, const char *text, size_t bytes, GError **error)

@@ -349,11 +349,10 @@ static bool decide_levels(FlExemplar *exemplar, const FlStyle *style, SegmentCou
     while (exemplar->n_levels > 1 &&
            counts[exemplar->n_levels - 1][FL_SEGMENT_BORDER] < MIN_SEGMENT)
         exemplar->n_levels--;
-    if (counts[0][FL_SEGMENT_BORDER] == 0) {
-        g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
-                    "%s: no frame has paint in its mask; expected some pixels of it", style->path);
-        return false;
-    }
+    if (counts[0][FL_SEGMENT_BORDER] == 0)
+        return fl_fail(error, FL_ERROR_STYLE,
+                       "%s: no frame has paint in its mask; expected some pixels of it",
+                       style->path);
     return true;
 }
 

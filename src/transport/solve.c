@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/curves.h"
+#include "base/error.h"
 #include <math.h>
 
 // Weights of what is held small beside the loss: how the velocity changes, its size, folds.
@@ -171,8 +172,7 @@ static void step(Solver *solver, unsigned grids, float length)
 
 static bool interrupted(GError **error)
 {
-    g_set_error_literal(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted");
-    return false;
+    return fl_fail(error, FL_ERROR_INTERRUPTED, "interrupted");
 }
 
 /* The report of a run, and its progress. */

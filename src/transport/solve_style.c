@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "transport/solve.h"
 #include "transport/tile.h"
 
@@ -18,11 +19,9 @@ static bool normalise(float *density, size_t n, const char *folder, GError **err
         double sum = 0;
         for (size_t i = 0; i < n; i++)
             sum += density[i];
-        if (!(sum > 0)) {
-            g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
-                        "%s: the first frame is bare paper; expected ink", folder);
-            return false;
-        }
+        if (!(sum > 0))
+            return fl_fail(error, FL_ERROR_STYLE, "%s: the first frame is bare paper; expected ink",
+                           folder);
         for (size_t i = 0; i < n; i++)
             density[i] = MIN(density[i] * (float)((double)n / sum), MOST_DENSITY);
     }
@@ -80,13 +79,11 @@ static float *tile_ink(const FlStyle *style, int size, GError **error)
 {
     const int width = style->width, height = style->height;
     const size_t n = (size_t)size * (size_t)size;
-    if (width < size || height < size) {
-        g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
-                    "%s: the first frame is %dx%d px; expected at least %dx%d, the size of the "
-                    "tile that is to be like it",
-                    style->path, width, height, size, size);
-        return NULL;
-    }
+    if (width < size || height < size)
+        return fl_none(error, FL_ERROR_STYLE,
+                       "%s: the first frame is %dx%d px; expected at least %dx%d, the size of the "
+                       "tile that is to be like it",
+                       style->path, width, height, size, size);
     g_autofree float *density = style_ink(style, error);
     if (!density || (width == size && height == size))
         return g_steal_pointer(&density);
@@ -122,11 +119,9 @@ bool fl_style_transport(const char *style_name, bool overwrite, FlTransportProgr
     FlTransportStyle wanted;
     if (!style || !fl_transport_style_read(&wanted, folder, error))
         return false;
-    if (!overwrite && fl_tile_exists(folder)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_EXISTS,
-                    "%s: has a transport.png already; use ‘overwrite’", folder);
-        return false;
-    }
+    if (!overwrite && fl_tile_exists(folder))
+        return fl_fail(error, FL_ERROR_EXISTS, "%s: has a transport.png already; use ‘overwrite’",
+                       folder);
     const size_t n = (size_t)wanted.size * (size_t)wanted.size;
     g_autofree float *sum = fl_alloc(n, sizeof *sum, "a tile", error);
     return sum && solve(style, &wanted, progress, data, sum, error) &&

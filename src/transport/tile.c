@@ -1,6 +1,7 @@
 #include "transport/tile.h"
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "io/png.h"
 #include "params/key_table.h"
 #include <math.h>
@@ -114,12 +115,10 @@ static bool fill(FlTile *tile, const FlPicture *picture, float scale, GError **e
 FlTile *fl_tile_load(const char *folder, float scale, GError **error)
 {
     g_autofree char *path = tile_path(folder);
-    if (!fl_tile_exists(folder)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
-                    "%s: no such file; expected a style that fluidy-style transport has solved",
-                    path);
-        return NULL;
-    }
+    if (!fl_tile_exists(folder))
+        return fl_none(error, FL_ERROR_STYLE,
+                       "%s: no such file; expected a style that fluidy-style transport has solved",
+                       path);
     g_autoptr(FlTile) tile = g_new0(FlTile, 1);
     g_autoptr(FlPicture) picture = NULL;
     if (!fl_transport_style_read(&tile->style, folder, error))
@@ -130,12 +129,10 @@ FlTile *fl_tile_load(const char *folder, float scale, GError **error)
         return NULL;
     }
     const int width = tile->style.size, height = width;
-    if (picture->width != width || picture->height != height) {
-        g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
-                    "%s: %dx%d pixels: expected %dx%d by the size in style.ini", path,
-                    picture->width, picture->height, width, height);
-        return NULL;
-    }
+    if (picture->width != width || picture->height != height)
+        return fl_none(error, FL_ERROR_STYLE,
+                       "%s: %dx%d pixels: expected %dx%d by the size in style.ini", path,
+                       picture->width, picture->height, width, height);
     return fill(tile, picture, scale, error) ? g_steal_pointer(&tile) : NULL;
 }
 

@@ -297,11 +297,9 @@ FlRecipe *fl_recipe_load(const char *path, GError **error)
     for (guint i = 0; i < sections->len; i++)
         if (!check_section(&g_array_index(sections, Section, i), path, error))
             return NULL;
-    if (recipe->width == 0 || recipe->n_pigments == 0 || recipe->n_events == 0) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: expected a [recipe] with a size, a [pigment NAME] and an [event NAME]",
-                    path);
-        return NULL;
-    }
+    if (recipe->width == 0 || recipe->n_pigments == 0 || recipe->n_events == 0)
+        return fl_none(error, FL_ERROR_INPUT,
+                       "%s: expected a [recipe] with a size, a [pigment NAME] and an [event NAME]",
+                       path);
     return g_steal_pointer(&recipe);
 }

@@ -2,6 +2,7 @@
 #include "watercolour/simulate.h"
 
 #include "base/alloc.h"
+#include "base/error.h"
 #include "base/limits.h"
 #include "base/memory.h"
 #include "style/style_folder.h"
@@ -142,11 +143,9 @@ static bool simulate(FlStyle *style, const FlRecipe *recipe, int size,
         if (!fl_scan_draw(studio.scan, paint_frame(&studio, frame), recipe, error))
             return false;
         store_frame(style, frame, studio.scan);
-        if (progress && !progress(frame + 1, recipe->frames, data)) {
-            g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED,
-                        "%s: interrupted; run it again to start anew", style->path);
-            return false;
-        }
+        if (progress && !progress(frame + 1, recipe->frames, data))
+            return fl_fail(error, FL_ERROR_INTERRUPTED,
+                           "%s: interrupted; run it again to start anew", style->path);
     }
     return true;
 }

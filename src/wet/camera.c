@@ -1,4 +1,5 @@
 /* The camera: the motion of the ground, which carries the paper along. */
+#include "base/error.h"
 #include "wet/wet_data.h"
 
 #include "base/alloc.h"

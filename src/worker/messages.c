@@ -133,7 +133,7 @@ bool fl_answer_begin(FlReader *reader, const char *file, GError **error)
     if (reader->failed)
         return fl_answer_set_damaged(file, error);
     if (code > 0)
-        g_set_error(error, FL_ERROR, code - 1, "%s", text);
+        fl_fail(error, code - 1, "%s", text);
     return code == 0;
 }
 

@@ -86,8 +86,7 @@ FlWorkers *fl_workers_new(const char *const *paths, FlSandboxing sandbox, bool a
     if (!apart || workers->orders || sandbox != FL_SANDBOXING_REQUIRE)
         return workers;
     g_free(workers);
-    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "‘sandbox’ require: %s", fl_process_lacks);
-    return NULL;
+    return fl_none(error, FL_ERROR_INPUT, "‘sandbox’ require: %s", fl_process_lacks);
 }
 
 /** Without users no worker keeps memory. */
@@ -288,10 +287,10 @@ bool fl_is_by_chance(const GError *error)
 
 static void set_too_much(const char *work, const FlRequest *r, GError **error)
 {
-    g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                "%s: frame %d: %s it takes more than %" G_GINT64_FORMAT
-                " MiB of memory; use ‘limit’ memory=N to allow more",
-                r->file, r->number, work, fl_limit(FL_LIMIT_MEMORY));
+    fl_fail(error, FL_ERROR_LIMIT,
+            "%s: frame %d: %s it takes more than %" G_GINT64_FORMAT
+            " MiB of memory; use ‘limit’ memory=N to allow more",
+            r->file, r->number, work, fl_limit(FL_LIMIT_MEMORY));
 }
 
 static void set_error(const Worker *w, const Outcome *end, const FlRequest *r, GError **error)
@@ -301,7 +300,7 @@ static void set_error(const Worker *w, const Outcome *end, const FlRequest *r, G
     FlError code = FL_ERROR_INPUT;
     g_autofree char *why = NULL;
     if (end->stopped) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted");
+        fl_fail(error, FL_ERROR_INTERRUPTED, "interrupted");
         return;
     }
     if (asked_too_much(w)) {
@@ -323,7 +322,7 @@ static void set_error(const Worker *w, const Outcome *end, const FlRequest *r, G
         why =
             g_strdup_printf("the SVG library crashed while %s it (%s)", work, g_strsignal(number));
     }
-    g_set_error(error, FL_ERROR, code, "%s: frame %d: %s", r->file, r->number, why);
+    fl_fail(error, code, "%s: frame %d: %s", r->file, r->number, why);
 }
 
 /* ---- asking ---------------------------------------------------------------------------------- */
@@ -366,8 +365,7 @@ static bool try_once(FlWorkers *workers, const FlRequest *request, const GByteAr
     *killed = !end.answered && !end.late && !end.stopped && WIFSIGNALED(end.status) &&
               WTERMSIG(end.status) == SIGKILL;
     if (end.answered && !data)
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "%s: not enough memory for its shapes",
-                    request->file);
+        fl_fail(error, FL_ERROR_NO_MEMORY, "%s: not enough memory for its shapes", request->file);
     else if (!end.answered)
         set_error(worker, &end, request, error);
     release(worker);
