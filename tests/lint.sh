@@ -85,13 +85,9 @@ references_are_listed() {
 
 header_guards() {
     local file guard
-    for file in $(git ls-files '*.h'); do
-        case $file in
-        include/*) guard=${file#include/} ;;
-        src/*) guard=fluidy/${file#src/} ;;
-        *) continue ;;
-        esac
-        guard=$(tr 'a-z/.-' 'A-Z___' <<<"$guard")
+    git ls-files 'src/*.h' | xargs grep -L '^#pragma once$' | sed 's/$/: expected #pragma once/'
+    for file in $(git ls-files 'include/*.h'); do
+        guard=$(tr 'a-z/.-' 'A-Z___' <<<"${file#include/}")
         grep -q "^#ifndef $guard\$" "$file" || echo "$file: expected the guard $guard"
     done
 }
@@ -212,7 +208,7 @@ no_include_circles() {
 report 'the programs use base, params and public headers only' programs_stay_outside
 report 'the library exports what src/fluidy.map lists' exported_symbols
 report 'no files include each other in a circle' no_include_circles
-report 'include guards are the path' header_guards
+report 'headers are read once; the public ones by guards that are their path' header_guards
 report 'no two files or types have one name' names_are_unique
 report 'every work that is cited is in REFERENCES.md' references_are_listed
 report 'options.def has every field of FlRenderOptions' options_are_in_the_table

@@ -1,7 +1,6 @@
 /* Frame-sized buffers: an allocation that fails is an error, not an abort. Free them with free() or
  * g_autofree: g_free() is free() since GLib 2.46. */
-#ifndef FLUIDY_BASE_ALLOC_H
-#define FLUIDY_BASE_ALLOC_H
+#pragma once
 
 #include "base/memory.h"
 #include <fluidy/error.h>
@@ -86,5 +85,3 @@ static inline void fl_release(void *part, size_t bytes)
         (void)madvise((void *)from, to - from, MADV_DONTNEED);
 #endif
 }
-
-#endif

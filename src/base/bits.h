@@ -1,6 +1,5 @@
 /* Sets of small numbers, a bit each. */
-#ifndef FLUIDY_BASE_BITS_H
-#define FLUIDY_BASE_BITS_H
+#pragma once
 
 #include "base/alloc.h"
 #include <stdbool.h>
@@ -25,5 +24,3 @@ static inline void fl_bit_clear(uint64_t *bits, size_t k)
 {
     bits[k / 64] &= ~((uint64_t)1 << (k % 64));
 }
-
-#endif

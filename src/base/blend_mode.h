@@ -1,6 +1,5 @@
 /* The blend modes of SVG [Compositing and Blending Level 1, §10]. */
-#ifndef FLUIDY_BASE_BLEND_MODE_H
-#define FLUIDY_BASE_BLEND_MODE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -32,5 +31,3 @@ typedef enum FlBlendMode {
  */
 void fl_blend_mode_apply(FlBlendMode mode, const uint8_t backdrop[3], int backdrop_alpha,
                          uint8_t rgb[3]);
-
-#endif

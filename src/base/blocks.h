@@ -1,6 +1,5 @@
 /* The painted areas of a mostly empty plane, as rectangles to loop over. */
-#ifndef FLUIDY_BASE_BLOCKS_H
-#define FLUIDY_BASE_BLOCKS_H
+#pragma once
 
 #include "base/rect.h"
 
@@ -22,5 +21,3 @@ void fl_blocks_init_full(FlBlocks *blocks, int width, int height);
 void fl_blocks_clear(FlBlocks *blocks);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlBlocks, fl_blocks_clear)
-
-#endif

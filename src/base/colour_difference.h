@@ -1,6 +1,5 @@
 /* The visible difference of two colours. */
-#ifndef FLUIDY_BASE_COLOUR_DIFFERENCE_H
-#define FLUIDY_BASE_COLOUR_DIFFERENCE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -12,5 +11,3 @@ float fl_colour_difference(const uint8_t a[3], const uint8_t b[3]);
 
 /** A plain word such as "brown" or "dark-green"; static storage. */
 const char *fl_colour_word(const uint8_t rgb[3]);
-
-#endif

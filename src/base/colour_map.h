@@ -1,6 +1,5 @@
 /* Colour maps for numbers and vectors. */
-#ifndef FLUIDY_BASE_COLOUR_MAP_H
-#define FLUIDY_BASE_COLOUR_MAP_H
+#pragma once
 
 #include <stdint.h>
 
@@ -10,5 +9,3 @@ void fl_colour_map(float value, uint8_t rgb[3]);
 /** A vector as a colour: its direction is the hue, its length as a share of `most` the saturation.
  */
 void fl_colour_wheel(float u, float v, float most, uint8_t rgb[3]);
-
-#endif

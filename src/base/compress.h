@@ -1,7 +1,6 @@
 /* Fast compression of what is written often and read once or twice, such as the states of engines:
  * a header, then packed parts. */
-#ifndef FLUIDY_BASE_COMPRESS_H
-#define FLUIDY_BASE_COMPRESS_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -37,5 +36,3 @@ bool fl_state_bytes_header(GBytes *bytes, void *header, size_t size, GError **er
 
 /** Fills the parts behind a header of `size` bytes, which was read; damaged bytes as above. */
 bool fl_state_bytes_parts(GBytes *bytes, size_t size, const FlSpan *parts, int n, GError **error);
-
-#endif

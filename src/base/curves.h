@@ -1,6 +1,5 @@
 /* Curves from sums, products and quotients alone: the same bits on every processor. */
-#ifndef FLUIDY_BASE_CURVES_H
-#define FLUIDY_BASE_CURVES_H
+#pragma once
 
 #include <glib.h>
 #include <math.h>
@@ -102,5 +101,3 @@ static inline float fl_even(float normal)
     const float fall = fl_fall(1.7f * (normal < 0 ? -normal : normal));
     return (normal < 0 ? fall : 1) / (1 + fall);
 }
-
-#endif

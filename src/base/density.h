@@ -1,7 +1,6 @@
 /* Optical density in fixed point: logarithms of 8-bit colours and the way back, the same
  * everywhere. */
-#ifndef FLUIDY_BASE_DENSITY_H
-#define FLUIDY_BASE_DENSITY_H
+#pragma once
 
 #include <stdint.h>
 
@@ -20,5 +19,3 @@ uint16_t fl_density_level(int32_t density);
 /** 16-bit linear light of an 8-bit sRGB level [IEC 61966-2-1], and the nearest level of a light. */
 uint16_t fl_srgb_to_linear(uint8_t level);
 uint8_t fl_srgb_from_linear(uint16_t light);
-
-#endif

@@ -1,6 +1,5 @@
 /* Digests of data in memory: names of what is kept for later, made faster than it is packed. */
-#ifndef FLUIDY_BASE_DIGEST_H
-#define FLUIDY_BASE_DIGEST_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -39,5 +38,3 @@ void fl_digest_add(FlDigest *digest, const void *data, size_t bytes);
 
 /** The same with a text; NULL is a piece of its own. */
 void fl_digest_add_text(FlDigest *digest, const char *text);
-
-#endif

@@ -1,6 +1,5 @@
 /* Loops over the items of arrays. */
-#ifndef FLUIDY_BASE_EACH_H
-#define FLUIDY_BASE_EACH_H
+#pragma once
 
 #include <glib.h>
 
@@ -8,5 +7,3 @@
 #define FL_EACH(Type, item, array)                                                                 \
     for (Type *item = (Type *)(void *)(array)->data;                                               \
          item - (Type *)(void *)(array)->data < (gssize)(array)->len; item++)
-
-#endif

@@ -1,6 +1,5 @@
 /* Sets errors, keeps the first one of parallel workers, and tells lines to a caller. */
-#ifndef FLUIDY_BASE_ERROR_H
-#define FLUIDY_BASE_ERROR_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -55,5 +54,3 @@ void fl_parallel_error_keep(GError **first, GError *failure);
 
 /** After the parallel part: moves `first` to `error`. Returns: true if `first` is NULL. */
 bool fl_parallel_error_propagate(GError **error, GError *first);
-
-#endif

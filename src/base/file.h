@@ -1,7 +1,6 @@
 /* Reads untrusted files: refuses pipes and devices, bounds the size, can be cancelled. Writes all
  * bytes to a descriptor. */
-#ifndef FLUIDY_BASE_FILE_H
-#define FLUIDY_BASE_FILE_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -54,5 +53,3 @@ bool fl_pwrite_all(int fd, const void *data, size_t bytes, int64_t offset);
 
 /** Reads all of the bytes from `offset` on. Returns: false with errno, 0 where the file ends. */
 bool fl_pread_all(int fd, void *data, size_t bytes, int64_t offset);
-
-#endif

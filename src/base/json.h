@@ -1,6 +1,5 @@
 /* Pieces of JSON text. */
-#ifndef FLUIDY_BASE_JSON_H
-#define FLUIDY_BASE_JSON_H
+#pragma once
 
 #include <glib.h>
 #include <stdbool.h>
@@ -21,5 +20,3 @@ void fl_json_text(GString *json, const char *name, const char *text);
 void fl_json_number(GString *json, const char *name, double value, bool known);
 
 void fl_json_bool(GString *json, const char *name, bool value);
-
-#endif

@@ -1,6 +1,5 @@
 /* Limits on what an input file may ask for: the checks. The table is limits.def. */
-#ifndef FLUIDY_BASE_LIMITS_H
-#define FLUIDY_BASE_LIMITS_H
+#pragma once
 
 #include <fluidy/limits.h>
 
@@ -24,5 +23,3 @@ void fl_limits_set_all(const int64_t limit[FL_N_LIMITS]);
  * Returns: false with FL_ERROR_LIMIT set, which says how to raise the limit.
  */
 bool fl_limit_check(FlLimit limit, double wanted, const char *where, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The memory that the process may use, and the room that is left. */
-#ifndef FLUIDY_BASE_MEMORY_H
-#define FLUIDY_BASE_MEMORY_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -44,5 +43,3 @@ bool fl_headroom_check(GError **error);
  * memory.
  */
 bool fl_headroom_left(void);
-
-#endif

@@ -1,6 +1,5 @@
 /* Affine motion as six modes, found by least squares. */
-#ifndef FLUIDY_BASE_MODES_H
-#define FLUIDY_BASE_MODES_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -25,5 +24,3 @@ void fl_least_squares_ridge(FlLeastSquares *sum, int k, double ridge);
 
 /** Returns: false if the unknowns are not determined. */
 bool fl_least_squares_solve(const FlLeastSquares *sum, double p[FL_MODES]);
-
-#endif

@@ -1,7 +1,6 @@
 /* Smooth noise as a function of place, from +, * and a hash only, and fibres: the same bits on any
  * CPU. */
-#ifndef FLUIDY_BASE_NOISE_H
-#define FLUIDY_BASE_NOISE_H
+#pragma once
 
 #include "base/rng.h"
 #include <stdint.h>
@@ -40,5 +39,3 @@ typedef struct FlFibre {
  */
 void fl_fibre_draw(float *grid, int width, int height, float x, float y, const FlFibre *fibre,
                    FlRng *rng);
-
-#endif

@@ -1,6 +1,5 @@
 /* The scale of paint on a page, and the tooth of its paper, which paint and pencils catch on. */
-#ifndef FLUIDY_BASE_PAGE_H
-#define FLUIDY_BASE_PAGE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -26,5 +25,3 @@ typedef struct FlTooth {
     const int8_t *height; // FL_TOOTH_ONE is a standard deviation; NULL: flat
     size_t stride;        // of its rows
 } FlTooth;
-
-#endif

@@ -1,6 +1,5 @@
 /* Pictures in memory. */
-#ifndef FLUIDY_BASE_PICTURE_H
-#define FLUIDY_BASE_PICTURE_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -25,5 +24,3 @@ FlPicture *fl_picture_new(int width, int height, GError **error);
 void fl_picture_free(FlPicture *picture); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPicture, fl_picture_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* A picture of which little is seen, as runs of pixels. */
-#ifndef FLUIDY_BASE_PIXEL_RUNS_H
-#define FLUIDY_BASE_PIXEL_RUNS_H
+#pragma once
 
 #include "base/rect.h"
 #include <fluidy/error.h>
@@ -26,5 +25,3 @@ void fl_pixel_runs_clear(FlPixelRuns *runs);
 
 /** Copies the runs of row y into a row of RGBA, which is clear. */
 void fl_pixel_runs_copy(const FlPixelRuns *runs, int y, uint8_t *row);
-
-#endif

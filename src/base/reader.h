@@ -1,8 +1,7 @@
 /* Writes messages and files, and reads bytes that need not be trusted, such as those of a file that
  * anybody may have written: a cursor that never passes their end. What it returns after a failure
  * is NULL, 0 or empty. */
-#ifndef FLUIDY_BASE_READER_H
-#define FLUIDY_BASE_READER_H
+#pragma once
 
 #include "base/rect.h"
 
@@ -64,5 +63,3 @@ bool fl_take_check(FlReader *reader, bool sound);
 
 /** Returns: true if all reads have succeeded and all bytes are consumed. */
 bool fl_reader_ends(const FlReader *reader);
-
-#endif

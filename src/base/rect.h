@@ -1,6 +1,5 @@
 /* A rectangle of pixels within a frame, and an area given by the columns of each row. */
-#ifndef FLUIDY_BASE_RECT_H
-#define FLUIDY_BASE_RECT_H
+#pragma once
 
 #include <glib.h>
 #include <math.h>
@@ -123,5 +122,3 @@ static inline FlRect fl_rect_doubled(FlRect rect, FlRect page)
 {
     return fl_rect_and((FlRect){2 * rect.x, 2 * rect.y, 2 * rect.width, 2 * rect.height}, page);
 }
-
-#endif

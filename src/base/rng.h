@@ -1,6 +1,5 @@
 /* Random numbers as a function of place, never of time: the same bytes on any thread count. */
-#ifndef FLUIDY_BASE_RNG_H
-#define FLUIDY_BASE_RNG_H
+#pragma once
 
 #include <stdint.h>
 
@@ -51,5 +50,3 @@ static inline float fl_rng_float(FlRng *rng)
 {
     return (float)(fl_rng_u32(rng) >> 8) * 0x1p-24f;
 }
-
-#endif

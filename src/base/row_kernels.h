@@ -1,6 +1,5 @@
 /* Loops over rows of pixels, compiled once per instruction set. */
-#ifndef FLUIDY_BASE_ROW_KERNELS_H
-#define FLUIDY_BASE_ROW_KERNELS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -141,5 +140,3 @@ const FlRowKernels *fl_row_kernels(void);
 #endif
 
 extern const FlRowKernels fl_row_kernels_c, fl_row_kernels_avx2, fl_row_kernels_avx512;
-
-#endif

@@ -1,6 +1,5 @@
 /* Restricts a process before it reads files that are not trusted. */
-#ifndef FLUIDY_BASE_SANDBOX_H
-#define FLUIDY_BASE_SANDBOX_H
+#pragma once
 
 #include <glib.h>
 #include <stdint.h>
@@ -43,5 +42,3 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlConfinement, fl_confinement_free)
 
 /** The reason why a process with these restrictions is not fully confined; NULL if it is. */
 const char *fl_sandbox_lacks(unsigned given_up);
-
-#endif

@@ -1,7 +1,6 @@
 /* The schedule of parallel work: every rule about threads is here. One piece of work in a thread of
  * its own. */
-#ifndef FLUIDY_BASE_SCHEDULE_H
-#define FLUIDY_BASE_SCHEDULE_H
+#pragma once
 
 #include <glib.h>
 #include <stdbool.h>
@@ -84,5 +83,3 @@ bool fl_task_wait(FlTask *task, GError **error);
 
 /** Waits for the work and drops its error. */
 void fl_task_clear(FlTask *task);
-
-#endif

@@ -1,6 +1,5 @@
 /* A temporary file of numbered blocks, for data of a long film that should not stay in memory. */
-#ifndef FLUIDY_BASE_SPILL_H
-#define FLUIDY_BASE_SPILL_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -25,5 +24,3 @@ bool fl_spill_get(const FlSpill *spill, size_t block, void *data, size_t bytes, 
 size_t fl_spill_bytes(const FlSpill *spill, size_t block);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSpill, fl_spill_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* "Did you mean": the known word that is nearest to one that was mistyped. */
-#ifndef FLUIDY_BASE_SUGGEST_H
-#define FLUIDY_BASE_SUGGEST_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -29,5 +28,3 @@ const char *fl_suggest(const char *word, const char *const *words);
  * Returns: to be freed with g_free(); never NULL.
  */
 char *fl_did_you_mean(const char *word, const char *const *words);
-
-#endif

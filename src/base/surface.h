@@ -1,7 +1,6 @@
 /* Cairo's image surfaces: making them, and copying bytes in and out. g_autoptr for the types of
  * cairo and librsvg. */
-#ifndef FLUIDY_BASE_SURFACE_H
-#define FLUIDY_BASE_SURFACE_H
+#pragma once
 
 #include <cairo.h>
 #include <fluidy/error.h>
@@ -27,5 +26,3 @@ uint8_t *fl_surface_bytes(cairo_surface_t *surface, int channels, int height, GE
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(cairo_t, cairo_destroy)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(RsvgHandle, g_object_unref)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(cairo_surface_t, cairo_surface_destroy)
-
-#endif

@@ -1,6 +1,5 @@
 /* Warnings: what is odd in the input but does not stop the work, collected for the caller. */
-#ifndef FLUIDY_BASE_WARNINGS_H
-#define FLUIDY_BASE_WARNINGS_H
+#pragma once
 
 #include <glib.h>
 
@@ -37,5 +36,3 @@ const FlWarning *fl_warnings_get(const FlWarnings *warnings, int i);
 char *fl_warning_line(const FlWarning *warning);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlWarnings, fl_warnings_free)
-
-#endif

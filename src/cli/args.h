@@ -1,6 +1,5 @@
 /* The command line of fluidy-svg as a struct. */
-#ifndef FLUIDY_CLI_ARGS_H
-#define FLUIDY_CLI_ARGS_H
+#pragma once
 
 #include "params/options.h"
 #include <fluidy/fluidy.h>
@@ -57,5 +56,3 @@ typedef struct FlArgs {
 bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error);
 
 void fl_args_clear(FlArgs *args);
-
-#endif

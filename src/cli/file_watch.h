@@ -1,6 +1,5 @@
 /* Watches the files that a render reads. */
-#ifndef FLUIDY_CLI_FILE_WATCH_H
-#define FLUIDY_CLI_FILE_WATCH_H
+#pragma once
 
 #include <fluidy/fluidy.h>
 #include <signal.h>
@@ -45,5 +44,3 @@ const char *fl_file_watch_last(const FlFileWatch *watch);
 void fl_file_watch_free(FlFileWatch *watch); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlFileWatch, fl_file_watch_free)
-
-#endif

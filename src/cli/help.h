@@ -1,6 +1,5 @@
 /* The help, suggestions for unknown options, and option names in messages. */
-#ifndef FLUIDY_CLI_HELP_H
-#define FLUIDY_CLI_HELP_H
+#pragma once
 
 #include "params/options.h"
 
@@ -16,5 +15,3 @@ void fl_help_suggest(GError **error);
 
 /** A message of the library in the words of the command line: ‘canvas’ as --canvas. To be freed. */
 char *fl_help_translate(const char *message);
-
-#endif

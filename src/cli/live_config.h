@@ -1,7 +1,6 @@
 /* The config of a film that is being tried out: the user's file and command line, and the choices
  * made in the page. */
-#ifndef FLUIDY_CLI_LIVE_CONFIG_H
-#define FLUIDY_CLI_LIVE_CONFIG_H
+#pragma once
 
 #include "args.h"
 
@@ -53,5 +52,3 @@ char *fl_live_config_options(void);
 void fl_live_config_free(FlLiveConfig *config); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlLiveConfig, fl_live_config_free)
-
-#endif

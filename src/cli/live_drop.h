@@ -1,6 +1,5 @@
 /* Files that were dropped on the live page, in a folder that goes with them. */
-#ifndef FLUIDY_CLI_LIVE_DROP_H
-#define FLUIDY_CLI_LIVE_DROP_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <libsoup/soup.h>
@@ -21,5 +20,3 @@ const char *const *fl_live_drop_inputs(const FlLiveDrop *drop);
 void fl_live_drop_free(FlLiveDrop *drop); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlLiveDrop, fl_live_drop_free)
-
-#endif

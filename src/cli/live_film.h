@@ -1,6 +1,5 @@
 /* The film of the page, in a thread of its own: it takes settings and gives pictures. */
-#ifndef FLUIDY_CLI_LIVE_FILM_H
-#define FLUIDY_CLI_LIVE_FILM_H
+#pragma once
 
 #include "args.h"
 
@@ -63,5 +62,3 @@ void fl_live_film_free(FlLiveFilm *film);
 
 /** The command that paints the film by the config at the path, for a shell; to be freed. */
 char *fl_live_film_command(const FlArgs *args, const char *config);
-
-#endif

@@ -1,6 +1,5 @@
 /* Progress on standard error. */
-#ifndef FLUIDY_CLI_PROGRESS_H
-#define FLUIDY_CLI_PROGRESS_H
+#pragma once
 
 #include "args.h"
 #include <stdio.h>
@@ -25,5 +24,3 @@ void fl_meter_hide(FlMeter *meter);
 
 /** Prints a line of words; as an object {"kind":"message"} among the lines of JSON. */
 void fl_meter_say(FlMeter *meter, const char *kind, const char *message);
-
-#endif

@@ -1,6 +1,5 @@
 /* --serve: a page for a browser on this machine in which a film is tried out. */
-#ifndef FLUIDY_CLI_SERVE_H
-#define FLUIDY_CLI_SERVE_H
+#pragma once
 
 #include "args.h"
 #include <signal.h>
@@ -13,5 +12,3 @@
  * errors of reading the drawing, FL_ERROR_OUTPUT if the port is in use.
  */
 bool fl_serve(const FlArgs *args, const volatile sig_atomic_t *stop, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The commands of fluidy-style: their options, and what runs them. */
-#ifndef FLUIDY_CLI_STYLE_COMMANDS_H
-#define FLUIDY_CLI_STYLE_COMMANDS_H
+#pragma once
 
 #include <fluidy/fluidy.h>
 
@@ -17,5 +16,3 @@ char *fl_style_command_translate(const GOptionEntry *entries, const char *messag
 
 /** All of them; one without a name ends the list. */
 extern const FlStyleCommand fl_style_commands[];
-
-#endif

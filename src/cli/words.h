@@ -1,6 +1,5 @@
 /* Command-line helpers of both programs, beside GOption. */
-#ifndef FLUIDY_CLI_WORDS_H
-#define FLUIDY_CLI_WORDS_H
+#pragma once
 
 #include <glib.h>
 
@@ -29,5 +28,3 @@ void fl_words_drop_separator(char **words);
  * Call this before all other functions.
  */
 void fl_wait_asleep(char **argv);
-
-#endif

@@ -1,6 +1,5 @@
 /* The background below the paint: a colour, a picture, one per frame, or transparency. */
-#ifndef FLUIDY_COMPOSE_BACKGROUND_H
-#define FLUIDY_COMPOSE_BACKGROUND_H
+#pragma once
 
 #include "base/picture.h"
 #include "drawing/drawing.h"
@@ -26,5 +25,3 @@ bool fl_background_init(FlBackground *background, const char *text, const uint8_
  */
 FlPicture *fl_background_picture(const FlBackground *background, const FlDrawing *drawing,
                                  int frame, int width, int height, GError **error);
-
-#endif

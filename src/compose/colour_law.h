@@ -1,6 +1,5 @@
 /* The colour law: which colour an amount of paint has, for a fill on a paper. */
-#ifndef FLUIDY_COMPOSE_COLOUR_LAW_H
-#define FLUIDY_COMPOSE_COLOUR_LAW_H
+#pragma once
 
 #include <stdint.h>
 
@@ -48,5 +47,3 @@ int fl_colour_law_turn(const FlColourLaw *law);
 
 /** The colour of an amount 0 … FL_AMOUNTS - 1. */
 void fl_colour_law_at(const FlColourLaw *law, int amount, uint8_t colour[3]);
-
-#endif

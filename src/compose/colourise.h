@@ -1,6 +1,5 @@
 /* Colourising: from the exemplar's paint to paint in the drawing's own colours. */
-#ifndef FLUIDY_COMPOSE_COLOURISE_H
-#define FLUIDY_COMPOSE_COLOURISE_H
+#pragma once
 
 #include "base/rect.h"
 #include "compose/ink.h"
@@ -65,5 +64,3 @@ void fl_colourise(const FlInk *ink, const FlColouring *colouring, const FlPainte
  */
 void fl_colourise_plain(const uint8_t *picture, const uint8_t flat[3], const uint8_t *coverage,
                         const FlArea *area, uint8_t *rgba);
-
-#endif

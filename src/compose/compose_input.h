@@ -1,6 +1,5 @@
 /* The input of a composite frame. */
-#ifndef FLUIDY_COMPOSE_COMPOSE_INPUT_H
-#define FLUIDY_COMPOSE_COMPOSE_INPUT_H
+#pragma once
 
 #include "compose/background.h"
 #include "compose/contacts.h"
@@ -50,5 +49,3 @@ static inline const uint8_t *fl_fill_of_film(const FlComposeInput *input,
         return painted->settings->colour;
     return region->skin >= 0 ? fl_drawing_region(input->drawing, region->skin)->rgb : region->rgb;
 }
-
-#endif

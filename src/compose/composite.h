@@ -1,6 +1,5 @@
 /* One finished frame: the painted regions, coloured and stacked over the background. */
-#ifndef FLUIDY_COMPOSE_COMPOSITE_H
-#define FLUIDY_COMPOSE_COMPOSITE_H
+#pragma once
 
 #include "compose/compose_input.h"
 #include "compose/layers.h"
@@ -33,5 +32,3 @@ void fl_composite_clear(FlComposite *composite);
 bool fl_composite_enlarge(FlComposite *composite, int width, int height, GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlComposite, fl_composite_clear)
-
-#endif

@@ -1,7 +1,6 @@
 /* Contacts: edges at which two regions are wet together, so that their paints run into each other.
  */
-#ifndef FLUIDY_COMPOSE_CONTACTS_H
-#define FLUIDY_COMPOSE_CONTACTS_H
+#pragma once
 
 #include "drawing/drawing.h"
 #include "style/style_folder.h"
@@ -44,5 +43,3 @@ typedef struct FlRunning {
 void fl_contact_lay(const FlContact *contact, const FlArea *area, const FlRunning *to);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlContacts, fl_contacts_clear)
-
-#endif

@@ -1,6 +1,5 @@
 /* Directions of the hand that an image gives, for marks and for the passes of a wash. */
-#ifndef FLUIDY_COMPOSE_DIRECTIONS_H
-#define FLUIDY_COMPOSE_DIRECTIONS_H
+#pragma once
 
 #include "base/picture.h"
 
@@ -17,5 +16,3 @@ typedef struct FlDirections {
  * mean, px; 0: of the place alone.
  */
 float fl_direction_at(const FlDirections *directions, float x, float y, float side, float angle);
-
-#endif

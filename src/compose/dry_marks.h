@@ -1,7 +1,6 @@
 /* Marks: strokes of dry media on the tooth of the paper, in place of the even grain of a
  * recording. */
-#ifndef FLUIDY_COMPOSE_DRY_MARKS_H
-#define FLUIDY_COMPOSE_DRY_MARKS_H
+#pragma once
 
 #include "base/page.h"
 #include "base/rect.h"
@@ -26,5 +25,3 @@ typedef struct FlMarking {
  */
 bool fl_marks_lay(const FlMarking *marking, const FlArea *area, FlRect page,
                   const uint8_t *coverage, int16_t *amounts, GError **error);
-
-#endif

@@ -1,7 +1,6 @@
 /* Exposure: the factor on a region's amounts of paint that gives its median the drawing's colour.
  */
-#ifndef FLUIDY_COMPOSE_EXPOSURE_H
-#define FLUIDY_COMPOSE_EXPOSURE_H
+#pragma once
 
 #include "compose/compose_input.h"
 #include "cover/cover_map.h"
@@ -15,5 +14,3 @@
  */
 bool fl_exposures_find(const FlComposeInput *input, const FlCover *cover, int *exposures,
                        GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Edges a hair off: a sliver of paper between neighbours here, an overlap there. */
-#ifndef FLUIDY_COMPOSE_GAPS_H
-#define FLUIDY_COMPOSE_GAPS_H
+#pragma once
 
 #include "compose/layers.h"
 #include "drawing/drawing.h"
@@ -19,5 +18,3 @@ typedef struct FlGaps {
  * FL_ERROR_NO_MEMORY.
  */
 bool fl_layer_open_gaps(FlLayer *layer, const FlGaps *gaps, FlRect page, GError **error);
-
-#endif

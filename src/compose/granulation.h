@@ -1,6 +1,5 @@
 /* Granulation and tooth: paint settles in the hollows of the paper, or catches on its peaks. */
-#ifndef FLUIDY_COMPOSE_GRANULATION_H
-#define FLUIDY_COMPOSE_GRANULATION_H
+#pragma once
 
 #include "base/rect.h"
 #include "compose/paper_sheet.h"
@@ -18,5 +17,3 @@
  */
 void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t *amounts,
                   int8_t *play);
-
-#endif

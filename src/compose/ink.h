@@ -1,6 +1,5 @@
 /* The ink of a style: how much paint a colour of the exemplar stands for. */
-#ifndef FLUIDY_COMPOSE_INK_H
-#define FLUIDY_COMPOSE_INK_H
+#pragma once
 
 #include "style/style_folder.h"
 
@@ -84,5 +83,3 @@ int fl_ink_exposure(const FlInk *ink, const uint8_t *painted, const uint8_t *cov
 int fl_ink_exposed(const FlInk *ink, int amount, int exposure);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlInk, fl_ink_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* Knockout: the share of what lies below a shape that its paint replaces. */
-#ifndef FLUIDY_COMPOSE_KNOCKOUT_H
-#define FLUIDY_COMPOSE_KNOCKOUT_H
+#pragma once
 
 #include "base/rect.h"
 #include "params/region_settings.h"
@@ -25,5 +24,3 @@
 bool fl_knockout(const int16_t *amounts, const uint8_t *coverage, const uint8_t *shown, FlRect box,
                  int width, int height, int radius_px, FlMedium medium, int darkness,
                  uint8_t *knockout, GError **error);
-
-#endif

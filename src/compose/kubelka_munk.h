@@ -1,6 +1,5 @@
 /* The colour of a layer of paint on paper [C97 §5]. */
-#ifndef FLUIDY_COMPOSE_KUBELKA_MUNK_H
-#define FLUIDY_COMPOSE_KUBELKA_MUNK_H
+#pragma once
 
 /** Reflectance and transmittance of a layer in one channel; 0..1. */
 typedef struct FlKmLayer {
@@ -12,5 +11,3 @@ FlKmLayer fl_km_layer(double absorption, double scattering, double thickness);
 
 /** The upper layer on the lower one. */
 FlKmLayer fl_km_over(FlKmLayer upper, FlKmLayer lower);
-
-#endif

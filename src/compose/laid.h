@@ -1,6 +1,5 @@
 /* The uppermost paint of a frame, which may stain the paper in later frames. */
-#ifndef FLUIDY_COMPOSE_LAID_H
-#define FLUIDY_COMPOSE_LAID_H
+#pragma once
 
 #include "compose/layers.h"
 #include "worker/draws.h"
@@ -23,5 +22,3 @@ void fl_laid_begin(FlLaid *laid);
 void fl_laid_add(FlLaid *laid, const FlLayer *layer, int region, const uint8_t paper[3]);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlLaid, fl_laid_clear)
-
-#endif

@@ -1,6 +1,5 @@
 /* Blending: the 16-bit values in which layers are blended, and paint lifted off its paper. */
-#ifndef FLUIDY_COMPOSE_LAYER_BLEND_H
-#define FLUIDY_COMPOSE_LAYER_BLEND_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -28,5 +27,3 @@ int fl_least_alpha(const FlTransfer *scale, const uint8_t colour[3], const uint8
  */
 void fl_unblend(const FlTransfer *scale, const uint8_t colour[3], const uint8_t paper[3],
                 int opacity, uint8_t rgba[4]);
-
-#endif

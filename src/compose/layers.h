@@ -1,6 +1,5 @@
 /* The stack of a frame: what each layer shows, and the layers over the background. */
-#ifndef FLUIDY_COMPOSE_LAYERS_H
-#define FLUIDY_COMPOSE_LAYERS_H
+#pragma once
 
 #include "base/blend_mode.h"
 #include "base/pixel_runs.h"
@@ -125,5 +124,3 @@ void fl_layers_compose16(const FlLayer *layers, int n, const FlBackdrop *backdro
 bool fl_layers_bleed(uint8_t *rgba, int width, int height, int radius_px, GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlLayersAbove, fl_layers_above_clear)
-
-#endif

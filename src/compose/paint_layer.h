@@ -1,6 +1,5 @@
 /* One layer of a frame, in the size of the film: the paint of a region, or a plain fill. */
-#ifndef FLUIDY_COMPOSE_PAINT_LAYER_H
-#define FLUIDY_COMPOSE_PAINT_LAYER_H
+#pragma once
 
 #include "compose/compose_input.h"
 #include "compose/layers.h"
@@ -28,5 +27,3 @@ bool fl_layer_paint(FlLayer *layer, const FlLayerSources *sources, int draw, GEr
 
 /** Frees all that a layer owns. */
 void fl_layer_clear(FlLayer *layer);
-
-#endif

@@ -1,6 +1,5 @@
 /* One region as it was painted in a frame, for the stages after the synthesis. */
-#ifndef FLUIDY_COMPOSE_PAINTED_REGION_H
-#define FLUIDY_COMPOSE_PAINTED_REGION_H
+#pragma once
 
 #include "compose/ink.h"
 #include "drawing/drawing.h"
@@ -87,5 +86,3 @@ static inline void fl_painted_pixel(const FlPaintedRegion *painted, size_t p, ui
     memcpy(rgba, painted->painted + 3 * p, 3);
     rgba[3] = painted->alpha ? painted->alpha[p] : 255;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* A picture as a sheet of paper: a scan, or a relief of one's own. */
-#ifndef FLUIDY_COMPOSE_PAPER_FILE_H
-#define FLUIDY_COMPOSE_PAPER_FILE_H
+#pragma once
 
 #include "base/page.h"
 #include "compose/paper_height.h"
@@ -23,5 +22,3 @@ typedef struct FlPaperPlanes {
  */
 bool fl_paper_file_fill(const FlPaperPlanes *sheet, const char *path, float scale, float relief,
                         GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The surface of a sheet of paper as a function of place: bumps, creases, tooth, lines, fibres. */
-#ifndef FLUIDY_COMPOSE_PAPER_HEIGHT_H
-#define FLUIDY_COMPOSE_PAPER_HEIGHT_H
+#pragma once
 
 #include "base/rect.h"
 #include "style/style_folder.h"
@@ -74,5 +73,3 @@ void fl_paper_hues(const FlPaperPlace *place, int x, int y, int n, FlPaperHue *h
 
 /** The share of a fleck at a place, 0..1. */
 float fl_paper_fleck(const FlPaperPlace *place, float x, float y);
-
-#endif

@@ -1,7 +1,6 @@
 /* The sheet of paper under a film: its light, which is multiplied into the frames, and its tooth,
  * on which paint settles. */
-#ifndef FLUIDY_COMPOSE_PAPER_SHEET_H
-#define FLUIDY_COMPOSE_PAPER_SHEET_H
+#pragma once
 
 #include "base/spill.h"
 #include "compose/paper_file.h"
@@ -83,5 +82,3 @@ bool fl_paper_sheet_picture(const FlPaperSheet *sheet, int frame, int width, int
 FlTooth fl_paper_sheet_tooth(const FlPaperSheet *sheet, int frame);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPaperSheet, fl_paper_sheet_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* Pigments, and the two of them that mix to a fill. */
-#ifndef FLUIDY_COMPOSE_PIGMENTS_H
-#define FLUIDY_COMPOSE_PIGMENTS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -29,5 +28,3 @@ typedef struct FlMixture {
 /** The mixture for a fill: hue counts most, then lightness. Any thread; each fill is searched once.
  */
 FlMixture fl_mixture_of(const uint8_t fill[3]);
-
-#endif

@@ -1,7 +1,6 @@
 /* A lower layer fades below the thin paint of an upper shape unless it goes on beyond that shape.
  */
-#ifndef FLUIDY_COMPOSE_UNDERLAY_H
-#define FLUIDY_COMPOSE_UNDERLAY_H
+#pragma once
 
 #include "compose/layers.h"
 
@@ -30,5 +29,3 @@ bool fl_underlay_next(FlUnderlay *above, FlLayer *layer, bool painted, GError **
 bool fl_fade_find(FlLayer *layer, GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlUnderlay, fl_underlay_clear)
-
-#endif

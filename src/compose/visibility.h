@@ -1,6 +1,5 @@
 /* Mattes: the visible part of a shape below others. */
-#ifndef FLUIDY_COMPOSE_VISIBILITY_H
-#define FLUIDY_COMPOSE_VISIBILITY_H
+#pragma once
 
 #include "base/rect.h"
 #include <fluidy/error.h>
@@ -36,5 +35,3 @@ void fl_visibility_spread(const FlVisibleShape *shape, int width, int height, fl
                           uint8_t *matte);
 
 #define FL_SPREAD_MAX_PX 32
-
-#endif

@@ -1,7 +1,6 @@
 /* Washes: the light and shadow side, brush passes, drying lines, pools and blooms that wet paint
  * leaves in a shape as a hand fills it, and the balance of its two pigments. */
-#ifndef FLUIDY_COMPOSE_WASH_H
-#define FLUIDY_COMPOSE_WASH_H
+#pragma once
 
 #include "compose/compose_input.h"
 
@@ -80,5 +79,3 @@ void fl_wash_lay(const FlWash *wash, float white, const FlArea *area, int16_t *a
                  int8_t *play);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlWashes, fl_washes_clear)
-
-#endif

@@ -1,6 +1,5 @@
 /* A wash in the making; private to the files of washes. */
-#ifndef FLUIDY_COMPOSE_WASH_FIELD_H
-#define FLUIDY_COMPOSE_WASH_FIELD_H
+#pragma once
 
 #include "base/curves.h"
 #include "compose/wash.h"
@@ -86,5 +85,3 @@ void fl_field_find_breadth(const FlWashField *field, float *breadth);
 
 /** Fills the planes of the wash with noise at the places where its parts were first seen. */
 void fl_field_fill_noise(const FlWashField *field);
-
-#endif

@@ -1,6 +1,5 @@
 /* The cover map of a frame: which shapes are seen where, and by how much. */
-#ifndef FLUIDY_COVER_COVER_MAP_H
-#define FLUIDY_COVER_COVER_MAP_H
+#pragma once
 
 #include "drawing/drawing.h"
 
@@ -59,5 +58,3 @@ bool fl_cover_note_seen(const FlDrawList *draws, int width, int height, FlHiding
                         GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlCover, fl_cover_clear)
-
-#endif

@@ -1,6 +1,5 @@
 /* The masks of every region and frame, compressed in a temporary file. */
-#ifndef FLUIDY_COVER_MASK_STORE_H
-#define FLUIDY_COVER_MASK_STORE_H
+#pragma once
 
 #include "base/rect.h"
 #include <fluidy/error.h>
@@ -47,5 +46,3 @@ bool fl_mask_store_same(const FlMaskStore *masks, int region, int a, int b);
 FlRect fl_mask_store_extent(const FlMaskStore *masks, int region);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlMaskStore, fl_mask_store_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* The edges at which regions meet: a rim, or paint that goes on. */
-#ifndef FLUIDY_COVER_NEIGHBOURS_H
-#define FLUIDY_COVER_NEIGHBOURS_H
+#pragma once
 
 #include "drawing/drawing.h"
 
@@ -35,5 +34,3 @@ FlEdge fl_neighbours_edge(const FlNeighbours *neighbours, int region, int other,
                           const FlEdge *limits);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlNeighbours, fl_neighbours_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* The surroundings of a region: shapes into which its paint goes on, and others. */
-#ifndef FLUIDY_COVER_SURROUND_H
-#define FLUIDY_COVER_SURROUND_H
+#pragma once
 
 #include "cover/mask_store.h"
 #include "cover/neighbours.h"
@@ -54,5 +53,3 @@ void fl_surround_planes_clear(FlSurroundPlanes *around);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlSurroundPlanes, fl_surround_planes_clear)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSurround, fl_surround_free)
-
-#endif

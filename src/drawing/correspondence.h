@@ -1,6 +1,5 @@
 /* The leaves of two frames, matched, and the motion of their outlines. */
-#ifndef FLUIDY_DRAWING_CORRESPONDENCE_H
-#define FLUIDY_DRAWING_CORRESPONDENCE_H
+#pragma once
 
 #include "drawing/outlines.h"
 #include "svg/geometry.h"
@@ -80,5 +79,3 @@ typedef struct FlLeafMeasure {
  * lie inside them in both frames, if these agree to half a pixel. */
 void fl_turn_round_hosts(const FlTwoFrames *frames, const FlLeafMeasure *before,
                          const FlLeafMeasure *now, FlCorrespondence *correspondence);
-
-#endif

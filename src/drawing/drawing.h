@@ -1,6 +1,5 @@
 /* An SVG sequence as regions: the parts of the drawing that are painted as one, in every frame. */
-#ifndef FLUIDY_DRAWING_DRAWING_H
-#define FLUIDY_DRAWING_DRAWING_H
+#pragma once
 
 #include "base/error.h"
 #include "base/warnings.h"
@@ -202,5 +201,3 @@ FlDrawList *fl_hold_draw_list(const FlDrawing *drawing, const FlHand *hand, int 
  */
 FlDrawing *fl_drawing_open_for(const FlDrawingOptions *options, const FlConfig *config,
                                const FlCaller *caller, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The data of an FlDrawing; private to drawing/. */
-#ifndef FLUIDY_DRAWING_DRAWING_DATA_H
-#define FLUIDY_DRAWING_DRAWING_DATA_H
+#pragma once
 
 #include "drawing/drawing.h"
 #include "worker/workers.h"
@@ -47,5 +46,3 @@ struct FlDrawing {
     int n_kept;        // entries of `kept`
     size_t kept_bytes;
 };
-
-#endif

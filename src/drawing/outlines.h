@@ -1,6 +1,5 @@
 /* The outlines of a drawing's frames, and which leaves make up a region. */
-#ifndef FLUIDY_DRAWING_OUTLINES_H
-#define FLUIDY_DRAWING_OUTLINES_H
+#pragma once
 
 #include "drawing/drawing.h"
 #include "svg/geometry.h"
@@ -34,5 +33,3 @@ FlLeafFill *fl_drawing_leaf_fills(const FlDrawing *drawing, int frame, const FlO
 
 /** True if both frames show one file. */
 bool fl_drawing_same_file(const FlDrawing *drawing, int a, int b);
-
-#endif

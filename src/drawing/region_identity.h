@@ -1,6 +1,5 @@
 /* Groups the leaves of all frames into regions: tracks of leaves, their nesting, and the names. */
-#ifndef FLUIDY_DRAWING_REGION_IDENTITY_H
-#define FLUIDY_DRAWING_REGION_IDENTITY_H
+#pragma once
 
 #include "drawing/survey.h"
 
@@ -80,5 +79,3 @@ bool fl_rules_check(const FlRule *rules, int n, GError **error);
 
 /** Returns: the index of the first rule that matches; -1 if no rule does. */
 int fl_rules_match(const FlRule *rules, int n, const FlRuleSubject *subject);
-
-#endif

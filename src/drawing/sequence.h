@@ -1,6 +1,5 @@
 /* The files of a drawing's frames, in order. */
-#ifndef FLUIDY_DRAWING_SEQUENCE_H
-#define FLUIDY_DRAWING_SEQUENCE_H
+#pragma once
 
 #include "base/warnings.h"
 #include "worker/messages.h"
@@ -74,5 +73,3 @@ bool fl_sequence_same(const FlSequence *sequence, int a, int b);
 void fl_sequence_free(FlSequence *sequence); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSequence, fl_sequence_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* One pass over the drawing: the parts of every frame, where they are, and with which paint. */
-#ifndef FLUIDY_DRAWING_SURVEY_H
-#define FLUIDY_DRAWING_SURVEY_H
+#pragma once
 
 #include "drawing/drawing_data.h"
 #include "worker/workers.h"
@@ -63,5 +62,3 @@ FlAnchor **fl_region_anchors_find(const FlSurvey *survey, int n_regions, GArray 
  * Warns about frames that have no shape in common with the one before and stay where that is.
  */
 bool fl_register(FlSurvey *survey, FlWarnings *warnings, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Gaussian blur of a plane. */
-#ifndef FLUIDY_GUIDES_BLUR_H
-#define FLUIDY_GUIDES_BLUR_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -24,5 +23,3 @@ bool fl_blur_with(float *plane, int width, int height, const FlBlurKernel *kerne
 
 /** The same with a Gaussian that is cut at three sigma; sigma_px > 0. */
 bool fl_blur(float *plane, int width, int height, float sigma_px, GError **error);
-
-#endif

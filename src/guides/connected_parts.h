@@ -1,6 +1,5 @@
 /* The connected parts of a plane. */
-#ifndef FLUIDY_GUIDES_CONNECTED_PARTS_H
-#define FLUIDY_GUIDES_CONNECTED_PARTS_H
+#pragma once
 
 #include "base/rect.h"
 #include <fluidy/error.h>
@@ -31,5 +30,3 @@ void fl_connected_parts_clear(FlConnectedParts *parts);
 void fl_boxes_of_labels(const int32_t *label, FlRect plane, int most, FlRect *box);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlConnectedParts, fl_connected_parts_clear)
-
-#endif

@@ -1,6 +1,5 @@
 /* The pixels that an outline covers, without a renderer: to tell leaves apart. */
-#ifndef FLUIDY_GUIDES_COVER_H
-#define FLUIDY_GUIDES_COVER_H
+#pragma once
 
 #include "base/rect.h"
 #include "svg/geometry.h"
@@ -19,5 +18,3 @@ void fl_cover_line(const FlOutlines *outlines, const FlGeometry *g, double reach
 
 /** The width of the leaf's stroke in px; 0: unknown. */
 double fl_stroke_px(const FlGeometry *g);
-
-#endif

@@ -1,6 +1,5 @@
 /* The direction guide: an 8-bit angle, also defined for pixels at rest. */
-#ifndef FLUIDY_GUIDES_DIRECTION_H
-#define FLUIDY_GUIDES_DIRECTION_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -20,5 +19,3 @@ int16_t fl_fine_angle(float x, float y);
  */
 void fl_direction(const uint8_t *coverage, const float *flow, const float *normal, size_t n,
                   float still_px, uint8_t *angle);
-
-#endif

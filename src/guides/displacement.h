@@ -1,6 +1,5 @@
 /* The motion of the drawing itself, which its outline need not show: displacements and turns. */
-#ifndef FLUIDY_GUIDES_DISPLACEMENT_H
-#define FLUIDY_GUIDES_DISPLACEMENT_H
+#pragma once
 
 #include "guides/guides.h"
 #include "guides/outline.h"
@@ -20,5 +19,3 @@ void fl_motion_confine(FlGuides *guides);
  * taken where motion is known, and not across seams between parts that move apart.
  */
 void fl_motion_turns(FlGuides *guides);
-
-#endif

@@ -1,6 +1,5 @@
 /* Sub-pixel signed distance from antialiased coverage. */
-#ifndef FLUIDY_GUIDES_DISTANCE_H
-#define FLUIDY_GUIDES_DISTANCE_H
+#pragma once
 
 #include "base/row_kernels.h"
 #include <fluidy/error.h>
@@ -39,5 +38,3 @@ bool fl_distance_to_contour(const uint8_t *mask, int width, int height, float *d
 void fl_contour_clear(FlContour *contour);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlContour, fl_contour_clear)
-
-#endif

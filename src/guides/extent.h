@@ -1,6 +1,5 @@
 /* Motion extents: how far the paint at a pixel has come, and how far it will go [F21 §3.3]. */
-#ifndef FLUIDY_GUIDES_EXTENT_H
-#define FLUIDY_GUIDES_EXTENT_H
+#pragma once
 
 #include "guides/outline.h"
 
@@ -31,5 +30,3 @@ void fl_extent_step(FlExtent *extent, const FlRect *mask_box, const uint8_t *cov
 bool fl_extent_moved(const FlExtent *extent);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlExtent, fl_extent_free)
-
-#endif

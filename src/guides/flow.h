@@ -1,6 +1,5 @@
 /* The flow of a mask sequence from the motion of its contour [F21 App. A]. */
-#ifndef FLUIDY_GUIDES_FLOW_H
-#define FLUIDY_GUIDES_FLOW_H
+#pragma once
 
 #include "guides/outline.h"
 
@@ -27,5 +26,3 @@ bool fl_flow_construct(const FlFlowFrame *now, const FlFlowFrame *before, const 
 
 /** Makes outline->normal: outward unit normals on the contour, diffused inward, not normalised. */
 bool fl_outline_normals(FlOutline *outline, GError **error);
-
-#endif

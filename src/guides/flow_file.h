@@ -1,6 +1,5 @@
 /* Flow fields in files, which may be better than those made from masks. */
-#ifndef FLUIDY_GUIDES_FLOW_FILE_H
-#define FLUIDY_GUIDES_FLOW_FILE_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -25,5 +24,3 @@ void fl_flow_halve(const float *flow, int width, int height, float *half);
 /** Writes one atomically, in the format of its name; NAN is unknown,
  * which raw files cannot say. FL_ERROR_OUTPUT. */
 bool fl_flow_save(const char *path, int width, int height, const float *flow, GError **error);
-
-#endif

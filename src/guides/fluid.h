@@ -1,6 +1,5 @@
 /* The flow of a fluid inside a moving outline. */
-#ifndef FLUIDY_GUIDES_FLUID_H
-#define FLUIDY_GUIDES_FLUID_H
+#pragma once
 
 #include "guides/outline.h"
 #include "params/region_settings.h"
@@ -51,5 +50,3 @@ void fl_fluid_step(FlFluid *fluid, const FlOutline *before, const FlOutline *now
 void fl_fluid_motion(const FlFluid *fluid, float *motion);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlFluid, fl_fluid_free)
-
-#endif

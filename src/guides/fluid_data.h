@@ -4,8 +4,7 @@
  * c - 1 and c + stride are its neighbours. The grid is staggered: u[c] is the velocity across the
  * left face of a cell, v[c] that across the upper one. Cells on the border of the grid are never in
  * the fluid, so that all others have neighbours and all four faces. */
-#ifndef FLUIDY_GUIDES_FLUID_DATA_H
-#define FLUIDY_GUIDES_FLUID_DATA_H
+#pragma once
 
 #include "guides/fluid.h"
 #include "guides/pressure.h"
@@ -104,5 +103,3 @@ void fl_fluid_read_shape(FlFluid *f);
 /** The motion of a part as a rigid body, at a place. */
 void fl_fluid_rigid(const FlFluidPart *part, float x, float y, float motion[2]);
 float fl_fluid_bulk_speed(const FlFluidPart *part);
-
-#endif

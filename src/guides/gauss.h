@@ -1,6 +1,5 @@
 /* Gaussian weights that are the same on every CPU (libm's exp has versions per CPU). */
-#ifndef FLUIDY_GUIDES_GAUSS_H
-#define FLUIDY_GUIDES_GAUSS_H
+#pragma once
 
 /** exp(-x) for x >= 0, to about 1e-12: a series after halving x eight times. */
 static inline double fl_exp_minus(double x)
@@ -20,5 +19,3 @@ static inline void fl_gauss_weights(float *weight, int radius, double sigma)
     for (int k = 0; k <= radius; k++)
         weight[k] = (float)fl_exp_minus(0.5 * k * k / (sigma * sigma));
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The stored planes of a guide sequence, for the code that builds them and the code that reads. */
-#ifndef FLUIDY_GUIDES_GUIDE_PLANES_H
-#define FLUIDY_GUIDES_GUIDE_PLANES_H
+#pragma once
 
 #include "base/spill.h"
 #include "guides/guides.h"
@@ -53,5 +52,3 @@ bool fl_guide_sequence_plane(const FlGuideSequence *sequence, int frame, FlGuide
 
 /** Reads the masks and fills sequence->frames and spill, forwards, all but the extents to come. */
 bool fl_guide_sequence_build(FlGuideSequence *sequence, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The guides of a mask sequence: distance, flow, direction and extents of motion [F21 §3.1–3.3]. */
-#ifndef FLUIDY_GUIDES_GUIDES_H
-#define FLUIDY_GUIDES_GUIDES_H
+#pragma once
 
 #include "guides/distance.h"
 #include "guides/outline.h"
@@ -131,5 +130,3 @@ void fl_shape_edge(const float *distance, int width, int height, float border_px
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlGuideSequence, fl_guide_sequence_free)
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlGuides, fl_guides_clear)
-
-#endif

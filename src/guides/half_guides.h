@@ -1,6 +1,5 @@
 /* Guides of half the size, by which drafts are painted. */
-#ifndef FLUIDY_GUIDES_HALF_GUIDES_H
-#define FLUIDY_GUIDES_HALF_GUIDES_H
+#pragma once
 
 #include "guides/guides.h"
 
@@ -16,5 +15,3 @@ void fl_plane_double(const void *half, int width, int height, size_t bytes, void
  * full: empty, to be cleared. FL_ERROR_NO_MEMORY.
  */
 bool fl_guides_double(const FlGuides *half, int width, int height, FlGuides *full, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Laplace's equation inside a shape, by multigrid: how values on the contour spread inward. */
-#ifndef FLUIDY_GUIDES_LAPLACE_H
-#define FLUIDY_GUIDES_LAPLACE_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -28,5 +27,3 @@ typedef enum FlSolverCell {
  */
 bool fl_laplace_solve(const uint8_t *cell, int width, int height, int cycles, float *field,
                       GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The local width of a shape at each of its pixels. */
-#ifndef FLUIDY_GUIDES_LOCAL_WIDTH_H
-#define FLUIDY_GUIDES_LOCAL_WIDTH_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -40,5 +39,3 @@ bool fl_local_width(const float *distance, const uint8_t *seen, int width, int h
 /** The same before it is limited and smoothed; 0 outside. */
 bool fl_largest_discs(const float *distance, const uint8_t *seen, int width, int height,
                       float cap_px, uint16_t *radius, GError **error);
-
-#endif

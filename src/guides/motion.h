@@ -1,6 +1,5 @@
 /* The motion of every pixel of a region, from the outlines of its leaves. */
-#ifndef FLUIDY_GUIDES_MOTION_H
-#define FLUIDY_GUIDES_MOTION_H
+#pragma once
 
 #include "drawing/correspondence.h"
 #include "guides/outline.h"
@@ -38,5 +37,3 @@ typedef struct FlMotionShares {
  */
 bool fl_motion_of_region(const FlMovingRegion *region, float *motion, FlMotionShares *shares,
                          GError **error);
-
-#endif

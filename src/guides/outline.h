@@ -1,6 +1,5 @@
 /* A mask with the data that the flow needs, shared by frames with the same mask. */
-#ifndef FLUIDY_GUIDES_OUTLINE_H
-#define FLUIDY_GUIDES_OUTLINE_H
+#pragma once
 
 #include "guides/connected_parts.h"
 #include <fluidy/error.h>
@@ -52,5 +51,3 @@ void fl_distance_gradient(const float *distance, int width, int height, int x, i
                           float gradient[2]);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlOutline, fl_outline_unref)
-
-#endif

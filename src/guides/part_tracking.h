@@ -1,6 +1,5 @@
 /* Tracks the parts of a shape to another frame. */
-#ifndef FLUIDY_GUIDES_PART_TRACKING_H
-#define FLUIDY_GUIDES_PART_TRACKING_H
+#pragma once
 
 #include "guides/outline.h"
 
@@ -28,5 +27,3 @@ typedef struct FlTrace {
  */
 bool fl_part_tracking_find(const FlOutline *now, const FlOutline *other, float limit_px,
                            FlTrace *trace, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Planes of integers in a spill: smooth ones shrink a lot, for neighbours differ by little. */
-#ifndef FLUIDY_GUIDES_PLANE_STORE_H
-#define FLUIDY_GUIDES_PLANE_STORE_H
+#pragma once
 
 #include "base/spill.h"
 #include <stdint.h>
@@ -13,5 +12,3 @@ bool fl_plane_store_put(FlSpill *spill, size_t block, const int32_t *values, siz
 /** Reads n integers that were stored with the same step. */
 bool fl_plane_store_get(const FlSpill *spill, size_t block, int32_t *values, size_t n, size_t step,
                         GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The pressure that makes a flow on a grid of cut cells incompressible. */
-#ifndef FLUIDY_GUIDES_PRESSURE_H
-#define FLUIDY_GUIDES_PRESSURE_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stddef.h>
@@ -32,5 +31,3 @@ void fl_pressure_solve(FlPressure *solver, const FlCells *cells, const double *m
                        float *pressure);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPressure, fl_pressure_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* Motion from two masks alone: the affine map that lays one outline over the other. */
-#ifndef FLUIDY_GUIDES_REGISTRATION_H
-#define FLUIDY_GUIDES_REGISTRATION_H
+#pragma once
 
 #include "guides/outline.h"
 
@@ -19,5 +18,3 @@
  * FL_ERROR_NO_MEMORY set.
  */
 bool fl_registration(FlOutline *before, FlOutline *now, float *motion, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The depth for the synthesis: a rim as wide as the shape allows. */
-#ifndef FLUIDY_GUIDES_RIM_H
-#define FLUIDY_GUIDES_RIM_H
+#pragma once
 
 #include "base/rect.h"
 
@@ -30,5 +29,3 @@ typedef struct FlRimShape {
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */
 bool fl_rim_depth(const FlRimShape *shape, float border_px, float *depth, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The guides, the field and T_temp of a frame, as pictures and raw data: --dump. */
-#ifndef FLUIDY_INSPECT_DUMP_H
-#define FLUIDY_INSPECT_DUMP_H
+#pragma once
 
 #include "compose/painted_region.h"
 
@@ -24,5 +23,3 @@
  */
 bool fl_dump_frame(const char *folder, const FlPaintedRegion *painted, const FlGuides *guides,
                    int number, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The guides of a frame as pictures for ebsynth, with its command line: --ebsynth. */
-#ifndef FLUIDY_INSPECT_EBSYNTH_H
-#define FLUIDY_INSPECT_EBSYNTH_H
+#pragma once
 
 #include "compose/painted_region.h"
 #include "synth/guide_pairs.h"
@@ -19,5 +18,3 @@ bool fl_ebsynth_begin(const char *folder, GError **error);
  */
 bool fl_ebsynth_frame(const char *folder, const FlPaintedRegion *painted, const FlGuidePairs *pairs,
                       int number, int before, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The guides and the field of one frame as pictures, with all regions in each. */
-#ifndef FLUIDY_INSPECT_GUIDE_PICTURES_H
-#define FLUIDY_INSPECT_GUIDE_PICTURES_H
+#pragma once
 
 #include "base/picture.h"
 #include "compose/painted_region.h"
@@ -37,5 +36,3 @@ void fl_guide_view_add(FlGuideView *view, int p, const FlPaintedRegion *painted,
  * the pictures per frame. FL_ERROR_NO_MEMORY.
  */
 bool fl_guide_view_write(const FlGuideView *view, GString *json, GError **error);
-
-#endif

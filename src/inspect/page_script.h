@@ -1,6 +1,5 @@
 /* The page of a report, and the scripts in it. */
-#ifndef FLUIDY_INSPECT_PAGE_SCRIPT_H
-#define FLUIDY_INSPECT_PAGE_SCRIPT_H
+#pragma once
 
 #include "base/picture.h"
 #include <glib.h>
@@ -25,5 +24,3 @@ bool fl_script_picture(GString *json, const char *name, const FlPicture *picture
 /** Writes a script of JSON between two pieces. Whatever the JSON holds, it does not end the script;
  * it is changed for that. */
 void fl_script_write(FILE *out, const char *before, GString *json, const char *after);
-
-#endif

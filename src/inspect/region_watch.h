@@ -1,6 +1,5 @@
 /* Changes, motion and sources of the paint of a region, for the page of a report. */
-#ifndef FLUIDY_INSPECT_REGION_WATCH_H
-#define FLUIDY_INSPECT_REGION_WATCH_H
+#pragma once
 
 #include "base/rect.h"
 #include "compose/painted_region.h"
@@ -71,5 +70,3 @@ void fl_exemplar_use_add(FlExemplarUse *use, const FlPaintedRegion *painted);
 bool fl_exemplar_use_write(const FlExemplarUse *use, GString *json, GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlExemplarUse, fl_exemplar_use_clear)
-
-#endif

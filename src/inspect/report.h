@@ -1,6 +1,5 @@
 /* The report of a render, one HTML page: before and after, guides, curves, times. */
-#ifndef FLUIDY_INSPECT_REPORT_H
-#define FLUIDY_INSPECT_REPORT_H
+#pragma once
 
 #include "compose/composite.h"
 #include "job/outputs.h"
@@ -47,5 +46,3 @@ bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **erro
 bool fl_report_finish(FlReport *report, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlReport, fl_report_free)
-
-#endif

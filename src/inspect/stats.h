@@ -1,6 +1,5 @@
 /* Statistics of a render as JSON lines: energies and times. */
-#ifndef FLUIDY_INSPECT_STATS_H
-#define FLUIDY_INSPECT_STATS_H
+#pragma once
 
 #include "compose/painted_region.h"
 #include "io/atomic_file.h"
@@ -32,5 +31,3 @@ bool fl_stats_finish(FlStats *stats, GError **error);
 void fl_stats_clear(FlStats *stats);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlStats, fl_stats_clear)
-
-#endif

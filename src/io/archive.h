@@ -1,6 +1,5 @@
 /* ZIP archives that are written: OpenRaster files and looks. */
-#ifndef FLUIDY_IO_ARCHIVE_H
-#define FLUIDY_IO_ARCHIVE_H
+#pragma once
 
 #include <glib.h>
 #include <stdbool.h>
@@ -23,5 +22,3 @@ bool fl_archive_add_text(FlArchive *archive, const char *name, const char *text)
 
 /** Completes the archive and writes it to the stream. */
 bool fl_archive_store(FlArchive *archive, FILE *stream);
-
-#endif

@@ -1,7 +1,6 @@
 /* Files that appear whole or not at all, and locks, so that two processes never write the same file
  * at the same time. */
-#ifndef FLUIDY_IO_ATOMIC_FILE_H
-#define FLUIDY_IO_ATOMIC_FILE_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -62,5 +61,3 @@ int fl_lock_take(const char *path, const char *what, GError **error);
 
 /** The same with a folder. */
 int fl_lock_take_folder(const char *path, const char *what, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Child processes with a pipe to or from us, started without a shell. */
-#ifndef FLUIDY_IO_CHILD_PROCESS_H
-#define FLUIDY_IO_CHILD_PROCESS_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <glib.h>
@@ -66,5 +65,3 @@ char *fl_child_stderr_tail(const FlChild *child);
 void fl_child_free(FlChild *child);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlChild, fl_child_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* A sheet of pictures in rows and columns, with captions beside and above them. */
-#ifndef FLUIDY_IO_CONTACT_SHEET_H
-#define FLUIDY_IO_CONTACT_SHEET_H
+#pragma once
 
 #include "base/surface.h"
 #include <stdbool.h>
@@ -38,5 +37,3 @@ bool fl_contact_sheet_save(const FlContactSheet *contact, const char *path, bool
                            GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlContactSheet, fl_contact_sheet_clear)
-
-#endif

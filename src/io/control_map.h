@@ -1,6 +1,5 @@
 /* Control maps: masks painted by hand, by which a dial is less in some places of the frame. */
-#ifndef FLUIDY_IO_CONTROL_MAP_H
-#define FLUIDY_IO_CONTROL_MAP_H
+#pragma once
 
 #include "base/rect.h"
 #include <fluidy/error.h>
@@ -35,5 +34,3 @@ bool fl_control_map_make(FlControlMap *map, int number, FlRect rect, double widt
                          float **value, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlControlMap, fl_control_map_free)
-
-#endif

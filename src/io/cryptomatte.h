@@ -1,7 +1,6 @@
 /* Cryptomatte: the names of the regions that cover each pixel, and their shares of it [Friedman and
  * Jones 2015, specification 1.2.0]. */
-#ifndef FLUIDY_IO_CRYPTOMATTE_H
-#define FLUIDY_IO_CRYPTOMATTE_H
+#pragma once
 
 #include <glib.h>
 
@@ -30,5 +29,3 @@ void fl_matte_row_begin(FlMatteRow row);
 /** Adds a layer of a region below the layers so far. alpha: that of the first pixel; the next one's
  * comes 4 bytes after it. */
 void fl_matte_row_add(FlMatteRow row, guint32 id, const guint8 *alpha);
-
-#endif

@@ -1,6 +1,5 @@
 /* Videos, and pictures other than PNG, through the ffmpeg program: a child process and a pipe. */
-#ifndef FLUIDY_IO_FFMPEG_H
-#define FLUIDY_IO_FFMPEG_H
+#pragma once
 
 #include "base/picture.h"
 
@@ -40,5 +39,3 @@ int fl_ffmpeg_sound(const char *path, double from_s, double seconds, GError **er
 double fl_ffmpeg_rate(const char *path);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlFfmpeg, fl_ffmpeg_close)
-
-#endif

@@ -5,8 +5,7 @@
  * front; "%%" is a percent sign. Without any of these, the last '####' stands for a number of
  * as many digits. Everything else is literal. No pattern is ever given to printf.
  */
-#ifndef FLUIDY_IO_PATTERN_H
-#define FLUIDY_IO_PATTERN_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -73,5 +72,3 @@ GArray *fl_range_parse(const char *range, int first, int last, GError **error);
 
 /** Numbers in their order as text, such as "7-9, 12 and 3 more", to be freed. */
 char *fl_range_text(const GArray *numbers);
-
-#endif

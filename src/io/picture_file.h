@@ -1,6 +1,5 @@
 /* Pictures named as paper or background: PNG, JPEG or WebP files. */
-#ifndef FLUIDY_IO_PICTURE_FILE_H
-#define FLUIDY_IO_PICTURE_FILE_H
+#pragma once
 
 #include "base/picture.h"
 
@@ -16,5 +15,3 @@ bool fl_picture_named(const char *path);
  * Colours count as sRGB. Returns: NULL with FL_ERROR_INPUT or FL_ERROR_LIMIT set, naming the file.
  */
 FlPicture *fl_picture_read(const char *path, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Numbered pictures: a folder's or a pattern's files, in order. */
-#ifndef FLUIDY_IO_PICTURE_SERIES_H
-#define FLUIDY_IO_PICTURE_SERIES_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -41,5 +40,3 @@ char *fl_series_path(const FlSeries *series, int number);
 void fl_series_free(FlSeries *series); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSeries, fl_series_free)
-
-#endif

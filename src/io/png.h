@@ -1,6 +1,5 @@
 /* PNG files in and out. */
-#ifndef FLUIDY_IO_PNG_H
-#define FLUIDY_IO_PNG_H
+#pragma once
 
 #include "base/picture.h"
 #include "base/pixel_runs.h"
@@ -64,5 +63,3 @@ bool fl_picture_is_opaque(const char *path);
  */
 bool fl_png_write(const char *path, const uint8_t *data, int width, int height, int channels,
                   GError **error);
-
-#endif

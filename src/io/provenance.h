@@ -1,7 +1,6 @@
 /* The mark of a picture or a film: a digest of all that it was made from, and one of the file
  * itself, as text in its metadata. */
-#ifndef FLUIDY_IO_PROVENANCE_H
-#define FLUIDY_IO_PROVENANCE_H
+#pragma once
 
 #include "base/digest.h"
 #include <glib.h>
@@ -38,5 +37,3 @@ FlMark fl_mark_read(const char *path, FlDigest *made_from);
 
 /** True if a file is unchanged since it was written, and was made from `made_from`. */
 bool fl_mark_is(const char *path, FlDigest made_from);
-
-#endif

@@ -1,6 +1,5 @@
 /* Sinks: where finished frames go. One struct of functions per format, each in a file. */
-#ifndef FLUIDY_IO_SINK_H
-#define FLUIDY_IO_SINK_H
+#pragma once
 
 #include "base/digest.h"
 #include "base/pixel_runs.h"
@@ -128,5 +127,3 @@ extern const FlSinkFormat fl_sink_mov, fl_sink_webm, fl_sink_mkv, fl_sink_mp4, f
 extern const FlSinkFormat fl_sink_hash;  // checksums of the frames
 extern const FlSinkFormat fl_sink_null;  // nothing
 extern const FlSinkFormat fl_sink_taken; // frames for params.take; no format that has a name
-
-#endif

@@ -1,6 +1,5 @@
 /* The engines: how a region's paint is made. Named variants with one interface. */
-#ifndef FLUIDY_JOB_ENGINE_H
-#define FLUIDY_JOB_ENGINE_H
+#pragma once
 
 #include "base/error.h"
 #include "compose/painted_region.h"
@@ -64,5 +63,3 @@ typedef struct FlEngine {
 
 /** The engine of a region: the one that was chosen, or the first that claims the style's folder. */
 const FlEngine *fl_engine_choose(FlEngineChoice choice, const char *style_folder);
-
-#endif

@@ -1,6 +1,5 @@
 /* The files that a render writes, and the guard against overwriting those that it reads. */
-#ifndef FLUIDY_JOB_OUTPUTS_H
-#define FLUIDY_JOB_OUTPUTS_H
+#pragma once
 
 #include "io/sink.h"
 #include "job/region_plan.h"
@@ -83,5 +82,3 @@ void fl_paint_file_find_place(const FlDrawing *drawing, FlRegionPlan *region);
 
 /** Reads the part painted->rect of such a file, or one that has that part alone. FL_ERROR_INPUT. */
 bool fl_paint_file_load(FlPaintedRegion *painted, const char *path, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The plan of a render: which region is painted with which style, settings and output. */
-#ifndef FLUIDY_JOB_PLAN_H
-#define FLUIDY_JOB_PLAN_H
+#pragma once
 
 #include "job/outputs.h"
 #include "job/region_plan.h"
@@ -204,5 +203,3 @@ void fl_resume_clear(FlResume *resume);
 bool fl_resume_verify(const FlPlan *plan, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPlan, fl_plan_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* The regions of a film: their shapes through time, and how each is painted. */
-#ifndef FLUIDY_JOB_REGION_PLAN_H
-#define FLUIDY_JOB_REGION_PLAN_H
+#pragma once
 
 #include "base/error.h"
 #include "base/rect.h"
@@ -136,5 +135,3 @@ FlFacts *fl_region_facts(const FlShapes *shapes, const FlRegionPlan *region, FlI
 
 /** Adds the flow files of shapes->painted[p], whose guides they decide as well. */
 void fl_region_facts_add_flow(FlFacts *facts, const FlShapes *shapes, int p, FlInputs *inputs);
-
-#endif

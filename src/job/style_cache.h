@@ -1,6 +1,5 @@
 /* The styles of a render, each loaded once for all its regions. */
-#ifndef FLUIDY_JOB_STYLE_CACHE_H
-#define FLUIDY_JOB_STYLE_CACHE_H
+#pragma once
 
 #include "base/error.h"
 #include "compose/painted_region.h"
@@ -59,5 +58,3 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyleCache, fl_style_cache_free)
  */
 FlStyle *fl_style_load_for(const char *folder, float scale, float texture_px, float least_px,
                            bool makes, FlCaller caller, float *factor, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Facts that decide bytes, in words, so that a later run can say what has changed. */
-#ifndef FLUIDY_KEEP_FACTS_H
-#define FLUIDY_KEEP_FACTS_H
+#pragma once
 
 #include "base/digest.h"
 #include "base/reader.h"
@@ -47,5 +46,3 @@ void fl_facts_put(GByteArray *out, const FlFacts *facts);
 FlFacts *fl_facts_take(FlReader *reader);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlFacts, fl_facts_free)
-
-#endif

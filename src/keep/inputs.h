@@ -1,7 +1,6 @@
 /* The list of files that a render reads, with the digests of their contents. The guard against
  * overwriting them, the facts of a render, its record and the watch of files use this list. */
-#ifndef FLUIDY_KEEP_INPUTS_H
-#define FLUIDY_KEEP_INPUTS_H
+#pragma once
 
 #include "base/digest.h"
 #include "drawing/drawing.h"
@@ -55,5 +54,3 @@ FlDigest fl_file_digest(const char *path);
 bool fl_inputs_may_write(FlInputs *inputs, const FlDrawing *drawing, char *output, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlInputs, fl_inputs_free)
-
-#endif

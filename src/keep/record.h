@@ -1,7 +1,6 @@
 /* The record of a render: what it was made from and how far it has come. Beside unfinished frames
  * it is a file, from which the render resumes; in the store it says that all is done. */
-#ifndef FLUIDY_KEEP_RECORD_H
-#define FLUIDY_KEEP_RECORD_H
+#pragma once
 
 #include "keep/facts.h"
 #include "keep/store.h"
@@ -31,5 +30,3 @@ void fl_record_keep(const FlRecord *record, FlStore *store, FlDigest name);
 FlRecord *fl_record_parse(GBytes *bytes);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlRecord, fl_record_free)
-
-#endif

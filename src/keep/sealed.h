@@ -1,7 +1,6 @@
 /* Sealed files: what is kept for a later run, behind a checksum or, with a key, behind a keyed
  * digest. They are read like a stranger's files. */
-#ifndef FLUIDY_KEEP_SEALED_H
-#define FLUIDY_KEEP_SEALED_H
+#pragma once
 
 #include "base/compress.h"
 #include <fluidy/error.h>
@@ -24,5 +23,3 @@ GBytes *fl_sealed_read(const char *path, bool *damaged);
 
 /** Writes the seal and the parts, which are read as one. Returns: false with errno. */
 bool fl_sealed_write(int fd, const FlSpan *parts, int n);
-
-#endif

@@ -1,7 +1,6 @@
 /* The store: things that a render keeps for later ones, named by the digest of all that they are
  * made from. Pictures in memory, and a folder of sealed files. */
-#ifndef FLUIDY_KEEP_STORE_H
-#define FLUIDY_KEEP_STORE_H
+#pragma once
 
 #include "base/compress.h"
 #include "base/digest.h"
@@ -56,5 +55,3 @@ void fl_store_drop(FlStore *store, FlKept kind, FlDigest name);
 void fl_store_warn(FlStore *store);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStore, fl_store_close)
-
-#endif

@@ -1,6 +1,5 @@
 /* The exemplar as LazyFluids reads it: one frame and its predecessor, on every level. */
-#ifndef FLUIDY_LAZY_FLUID_EXEMPLAR_H
-#define FLUIDY_LAZY_FLUID_EXEMPLAR_H
+#pragma once
 
 #include "lazy/fluid_planes.h"
 #include "synth/exemplar.h"
@@ -39,5 +38,3 @@ bool fl_fluid_splines_init(FlExemplarLevel *level, int width, int height, GError
 
 /** Straightens the plane of channel c, which is overwritten. */
 void fl_fluid_splines_fill(const FlExemplarLevel *level, int c, float *plane);
-
-#endif

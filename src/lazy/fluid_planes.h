@@ -1,6 +1,5 @@
 /* The channels of LazyFluids as float planes, their pyramid, and what is packed of them. */
-#ifndef FLUIDY_LAZY_FLUID_PLANES_H
-#define FLUIDY_LAZY_FLUID_PLANES_H
+#pragma once
 
 #include "synth/fluid_texel.h"
 #include <fluidy/error.h>
@@ -70,5 +69,3 @@ bool fl_fluid_segments_merge(FlFluidSegments *segments, GError **error);
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFluidPlanes, fl_fluid_planes_clear)
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFluidPicture, fl_fluid_picture_clear)
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFluidSegments, fl_fluid_segments_clear)
-
-#endif

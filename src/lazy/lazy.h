@@ -1,6 +1,5 @@
 /* LazyFluids: one region, frame by frame, by an exemplar that rides on the motion [L15]. */
-#ifndef FLUIDY_LAZY_LAZY_H
-#define FLUIDY_LAZY_LAZY_H
+#pragma once
 
 #include "params/region_settings.h"
 #include "synth/guide_pairs.h"
@@ -45,5 +44,3 @@ GBytes *fl_lazy_save(FlLazy *lazy, GError **error);
 bool fl_lazy_load(FlLazy *lazy, GBytes *state, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlLazy, fl_lazy_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* The state that a region in LazyFluids carries to its next frame, and its form as bytes. */
-#ifndef FLUIDY_LAZY_LAZY_STATE_H
-#define FLUIDY_LAZY_LAZY_STATE_H
+#pragma once
 
 #include "lazy/warp.h"
 #include "synth/guide_pairs.h"
@@ -48,5 +47,3 @@ bool fl_lazy_pairs(const FlFluidPlanes *source, const FlFluidPlanes *target,
  */
 uint16_t *fl_motion_blur(const uint16_t *rgba, const float *motion, int width, int height,
                          bool multiplied, float shutter, GError **error);
-
-#endif

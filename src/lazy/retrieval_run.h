@@ -1,6 +1,5 @@
 /* A retrieval: its input and result, the state between its passes, and the passes. */
-#ifndef FLUIDY_LAZY_RETRIEVAL_RUN_H
-#define FLUIDY_LAZY_RETRIEVAL_RUN_H
+#pragma once
 
 #include "params/params.h"
 #include "synth/fluid_texel.h"
@@ -123,5 +122,3 @@ const FlFluidTexel *fl_retrieval_patch(const FlFluidPicture *picture, uint32_t p
 bool fl_nearest(const FlRetrieval *retrieval, FlNnf *nnf, FlRetrieved *done, GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlRetrievalRun, fl_retrieval_run_clear)
-
-#endif

@@ -1,6 +1,5 @@
 /* Reversed retrieval: every source patch is used equally often [L15 §4.1]. */
-#ifndef FLUIDY_LAZY_RETRIEVE_H
-#define FLUIDY_LAZY_RETRIEVE_H
+#pragma once
 
 #include "lazy/retrieval_run.h"
 
@@ -18,5 +17,3 @@
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */
 bool fl_retrieve(const FlRetrieval *retrieval, FlNnf *nnf, FlRetrieved *done, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The last output carried along the motion: X^ and lambda_q [L15 §3.1, §4.3]. */
-#ifndef FLUIDY_LAZY_WARP_H
-#define FLUIDY_LAZY_WARP_H
+#pragma once
 
 #include "guides/guides.h"
 #include "lazy/fluid_planes.h"
@@ -41,5 +40,3 @@ bool fl_fluid_warp(const FlFluidPast *past, float sigma_px, const float *motion,
  */
 bool fl_fluid_carry(const FlNnf *past, const float *motion, const FlFluidPlanes *planes,
                     const FlFluidPicture *source, FlNnf *now, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The config file of a render, fluidy-svg.conf(5): rules that say which leaves are painted how. */
-#ifndef FLUIDY_PARAMS_CONFIG_H
-#define FLUIDY_PARAMS_CONFIG_H
+#pragma once
 
 #include "base/digest.h"
 #include "params/options.h"
@@ -100,5 +99,3 @@ char *fl_config_text(const FlConfig *config, const FlRenderOptions *options, FlC
                      void *data, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlConfig, fl_config_free)
-
-#endif

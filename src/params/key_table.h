@@ -1,7 +1,6 @@
 /* Key files, sections of "key = value" lines, and tables of keys: the field that each key of a
  * section sets, and the values that it may have. */
-#ifndef FLUIDY_PARAMS_KEY_TABLE_H
-#define FLUIDY_PARAMS_KEY_TABLE_H
+#pragma once
 
 #include "base/file.h"
 #include <fluidy/error.h>
@@ -92,5 +91,3 @@ bool fl_key_file_read(const char *path, const FlKeyReader *reader, GError **erro
 
 /** Items between semicolons, without outer spaces; empty ones are left out. g_strfreev(). */
 char **fl_key_file_list(const char *value);
-
-#endif

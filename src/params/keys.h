@@ -1,6 +1,5 @@
 /* Keys in time: an option of a region that changes from frame to frame. */
-#ifndef FLUIDY_PARAMS_KEYS_H
-#define FLUIDY_PARAMS_KEYS_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -41,5 +40,3 @@ double fl_keys_amount(const FlKeys *keys, int frame);
 float fl_keys_share(const FlKeys *keys, int k, int frame);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlKeys, fl_keys_free)
-
-#endif

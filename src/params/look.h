@@ -1,7 +1,6 @@
 /* Looks: a config with its styles, paper and a thumbnail in one file, to be given away. A look is a
  * ZIP archive of look.conf, thumbnail.png and files below styles/ and files/. */
-#ifndef FLUIDY_PARAMS_LOOK_H
-#define FLUIDY_PARAMS_LOOK_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -24,5 +23,3 @@ static inline bool fl_look_named(const char *path)
  * name that is not one of those above, FL_ERROR_LIMIT if it is too large, or FL_ERROR_OUTPUT.
  */
 char *fl_look_unpack(const char *path, GError **error);
-
-#endif

@@ -1,7 +1,6 @@
 /* The table of options, made from options.def and params.def: name, values, the field it sets and
  * whether it decides the bytes of a render. */
-#ifndef FLUIDY_PARAMS_OPTIONS_H
-#define FLUIDY_PARAMS_OPTIONS_H
+#pragma once
 
 #include "base/error.h"
 #include "params/region_settings.h"
@@ -186,5 +185,3 @@ FL_API char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const cha
  * Returns: to be freed with g_bytes_unref().
  */
 FL_API GBytes *fl_live_page(void);
-
-#endif

@@ -1,6 +1,5 @@
 /* The parameters of the synthesis as a plain struct, made from params.def. */
-#ifndef FLUIDY_PARAMS_PARAMS_H
-#define FLUIDY_PARAMS_PARAMS_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -62,5 +61,3 @@ extern const char *const fl_preset_names[];
 
 /** Returns: the name of the preset of an older word; any other word itself. */
 const char *fl_preset_word(const char *word);
-
-#endif

@@ -1,6 +1,5 @@
 /* The settings of a region, and the overrides of config and command line. */
-#ifndef FLUIDY_PARAMS_REGION_SETTINGS_H
-#define FLUIDY_PARAMS_REGION_SETTINGS_H
+#pragma once
 
 #include "params/params.h"
 #include <stdint.h>
@@ -212,5 +211,3 @@ void fl_overrides_apply(const FlOverrides *overrides, const char *region,
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlRegionSettings, fl_region_settings_clear)
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlOverrides, fl_overrides_clear)
-
-#endif

@@ -1,6 +1,5 @@
 /* Parses values, the same on the command line and in key files. */
-#ifndef FLUIDY_PARAMS_TEXT_H
-#define FLUIDY_PARAMS_TEXT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -30,5 +29,3 @@ char *fl_text_path(const char *path, const char *folder);
 
 /** "#rrggbb", to be freed. */
 char *fl_text_of_colour(const uint8_t rgb[3]);
-
-#endif

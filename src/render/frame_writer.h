@@ -1,6 +1,5 @@
 /* Writes finished frames: their files, layers and paint, and the film. */
-#ifndef FLUIDY_RENDER_FRAME_WRITER_H
-#define FLUIDY_RENDER_FRAME_WRITER_H
+#pragma once
 
 #include "compose/composite.h"
 #include "job/outputs.h"
@@ -34,5 +33,3 @@ bool fl_frame_writer_frame(FlFrameWriter *writer, const FlComposite *composite, 
 
 /** Completes the film. */
 bool fl_frame_writer_finish(FlFrameWriter *writer, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The frames of a film: its regions are painted and composed, one frame after the other. */
-#ifndef FLUIDY_RENDER_FRAMES_H
-#define FLUIDY_RENDER_FRAMES_H
+#pragma once
 
 #include "base/schedule.h"
 #include "compose/composite.h"
@@ -79,5 +78,3 @@ bool fl_frames_tell(const FlFrames *frames, const char *stage, int done, double 
  */
 bool fl_render_frames(const FlRenderOptions *options, FlTakeFrame take, void *taker,
                       GError **error);
-
-#endif

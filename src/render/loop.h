@@ -1,6 +1,5 @@
 /* Loops: films whose end leads into their beginning, region by region. */
-#ifndef FLUIDY_RENDER_LOOP_H
-#define FLUIDY_RENDER_LOOP_H
+#pragma once
 
 #include "base/spill.h"
 #include "compose/painted_region.h"
@@ -37,5 +36,3 @@ bool fl_loop_keep(FlLoop *loop, int k, const FlPaintedRegion *painted, GError **
  * are. The spots are fixed in the frame. FL_ERROR_OUTPUT.
  */
 bool fl_loop_blend(const FlLoop *loop, int index, FlPaintedRegion *painted, GError **error);
-
-#endif

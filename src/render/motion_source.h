@@ -1,6 +1,5 @@
 /* The source of the regions' exact motion: the outlines of the film's frames. */
-#ifndef FLUIDY_RENDER_MOTION_SOURCE_H
-#define FLUIDY_RENDER_MOTION_SOURCE_H
+#pragma once
 
 #include "cover/mask_store.h"
 #include "guides/motion.h"
@@ -43,5 +42,3 @@ bool fl_motion_source_whole(void *source, int region, int before, int now, FlRec
                             float *motion, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlMotionSource, fl_motion_source_free)
-
-#endif

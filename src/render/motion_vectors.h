@@ -1,6 +1,5 @@
 /* Motion vectors of a frame, as compositors read them. */
-#ifndef FLUIDY_RENDER_MOTION_VECTORS_H
-#define FLUIDY_RENDER_MOTION_VECTORS_H
+#pragma once
 
 #include "compose/composite.h"
 #include "job/region_plan.h"
@@ -15,5 +14,3 @@
  */
 bool fl_motion_vectors(const FlShapes *shapes, FlMotionSource *halved, int frame,
                        FlComposite *composite, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The painter of one region: its guides, its engine, and its last picture. */
-#ifndef FLUIDY_RENDER_PAINTER_H
-#define FLUIDY_RENDER_PAINTER_H
+#pragma once
 
 #include "guides/fluid.h"
 #include "guides/guides.h"
@@ -124,5 +123,3 @@ bool fl_painter_make_guides(FlPainter *painter, GError **error);
 
 /** Brings the guides that are wanted to the size of the picture. */
 bool fl_painter_show_guides(FlPainter *painter, GError **error);
-
-#endif

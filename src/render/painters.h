@@ -1,6 +1,5 @@
 /* All painters of a render, and their memory and schedule. */
-#ifndef FLUIDY_RENDER_PAINTERS_H
-#define FLUIDY_RENDER_PAINTERS_H
+#pragma once
 
 #include "render/painter.h"
 
@@ -55,5 +54,3 @@ bool fl_painters_each(FlPainters *painters, int step, FlPainterWork work, void *
 
 /** Pictures of this film's painters that an engine has made. */
 int fl_painters_painted(const FlPainters *painters);
-
-#endif

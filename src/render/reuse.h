@@ -1,7 +1,6 @@
 /* The part of a region's paint that earlier renders left in the cache, and that this render
  * adds. */
-#ifndef FLUIDY_RENDER_REUSE_H
-#define FLUIDY_RENDER_REUSE_H
+#pragma once
 
 #include "guides/guides.h"
 #include "job/region_plan.h"
@@ -79,5 +78,3 @@ void fl_reuse_finish(FlReuse *reuse);
 /** The reason why the region is painted anew, such as "w-temp was 5 and is 8"; NULL: not known. To
  * be freed. */
 char *fl_reuse_reason(const FlReuse *reuse);
-
-#endif

@@ -1,6 +1,5 @@
 /* The part of a style that is used, at the size that suits the target. */
-#ifndef FLUIDY_STYLE_ADAPT_H
-#define FLUIDY_STYLE_ADAPT_H
+#pragma once
 
 #include "style/style_folder.h"
 
@@ -25,5 +24,3 @@ FlStyle *fl_style_adapt(const FlStyle *style, const FlStyleUse *use, GError **er
 
 /** A style of half the size, fl_half_side(): means of 2x2 pixels. FL_ERROR_NO_MEMORY. */
 FlStyle *fl_style_halve(const FlStyle *style, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Estimates from the frames of a recording: the paper's colour and the masks. */
-#ifndef FLUIDY_STYLE_ESTIMATE_H
-#define FLUIDY_STYLE_ESTIMATE_H
+#pragma once
 
 #include "base/picture.h"
 #include "style/style_folder.h"
@@ -112,5 +111,3 @@ float fl_flat_field_range(const FlFlatField *field);
  */
 void fl_flat_field_flatten(const FlFlatField *field, uint8_t *rgb, const uint8_t *mask,
                            int n_frames);
-
-#endif

@@ -1,6 +1,5 @@
 /* style.ini: what the artist says about a style, with the line it is said on. */
-#ifndef FLUIDY_STYLE_MANIFEST_H
-#define FLUIDY_STYLE_MANIFEST_H
+#pragma once
 
 #include "params/key_table.h"
 #include "style/style_folder.h"
@@ -27,5 +26,3 @@ bool fl_manifest_read(FlStyle *style, const char *path, GError **error);
 
 /** The text of a style.ini that says what the style holds. Guessed values are left out. */
 char *fl_manifest_text(const FlStyle *style);
-
-#endif

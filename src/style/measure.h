@@ -1,6 +1,5 @@
 /* Measurements of a style: how much paint it has, how that moves, how rich its texture is. */
-#ifndef FLUIDY_STYLE_MEASURE_H
-#define FLUIDY_STYLE_MEASURE_H
+#pragma once
 
 #include "guides/guides.h"
 #include "style/style_folder.h"
@@ -68,5 +67,3 @@ typedef struct FlCheckSheet {
  * an error of the guides set.
  */
 bool fl_check_sheet_write(const FlCheckSheet *sheet, const char *path, GError **error);
-
-#endif

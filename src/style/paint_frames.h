@@ -1,6 +1,5 @@
 /* Frames, alpha and masks of a style as pixels, while it is being made or read. */
-#ifndef FLUIDY_STYLE_PAINT_FRAMES_H
-#define FLUIDY_STYLE_PAINT_FRAMES_H
+#pragma once
 
 #include "base/picture.h"
 #include "style/style_folder.h"
@@ -22,5 +21,3 @@ void fl_style_store_mask(FlStyle *style, int frame, const FlPicture *picture);
 
 /** Returns: false with FL_ERROR_STYLE set if every mask is empty or covers only bare paper. */
 bool fl_style_check_paint(const FlStyle *style, GError **error);
-
-#endif

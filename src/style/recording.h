@@ -1,6 +1,5 @@
 /* A recording to import: a video, a still, numbered pictures or a folder of them; and its shake. */
-#ifndef FLUIDY_STYLE_RECORDING_H
-#define FLUIDY_STYLE_RECORDING_H
+#pragma once
 
 #include "base/picture.h"
 #include "io/picture_series.h"
@@ -61,5 +60,3 @@ float fl_shake_extent(const FlShift *shift, int n_frames);
  */
 bool fl_shake_undo(uint8_t *plane, int width, int height, int channels, FlShift shift,
                    GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Parts of pictures, and pictures in other sizes. */
-#ifndef FLUIDY_STYLE_RESAMPLE_H
-#define FLUIDY_STYLE_RESAMPLE_H
+#pragma once
 
 #include "base/picture.h"
 
@@ -29,5 +28,3 @@ void fl_resample_columns(const FlResampling *resampling, const float *from, size
 FlPicture *fl_picture_resize(const FlPicture *picture, int width, int height, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlResampling, fl_resampling_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* A style: a folder of recorded paint, read into memory. */
-#ifndef FLUIDY_STYLE_STYLE_FOLDER_H
-#define FLUIDY_STYLE_STYLE_FOLDER_H
+#pragma once
 
 #include "base/error.h"
 #include "params/region_settings.h"
@@ -138,5 +137,3 @@ float fl_style_smoothness(const FlStyle *style);
 void fl_style_free(FlStyle *style); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyle, fl_style_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* The guides of a style's frames, and the parameters of guides. */
-#ifndef FLUIDY_STYLE_STYLE_GUIDES_H
-#define FLUIDY_STYLE_STYLE_GUIDES_H
+#pragma once
 
 #include "guides/guides.h"
 #include "params/params.h"
@@ -11,5 +10,3 @@ FlGuideParams fl_guide_params(const FlParams *params);
 
 /** The guides of a style, which must stay as long as they do. NULL with an error of theirs set. */
 FlGuideSequence *fl_style_guides(const FlStyle *style, const FlParams *params, GError **error);
-
-#endif

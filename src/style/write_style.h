@@ -1,6 +1,5 @@
 /* Writes a style from memory into a folder. */
-#ifndef FLUIDY_STYLE_WRITE_STYLE_H
-#define FLUIDY_STYLE_WRITE_STYLE_H
+#pragma once
 
 #include "style/style_folder.h"
 
@@ -18,5 +17,3 @@ bool fl_style_write(const FlStyle *style, const char *folder, bool overwrite, GE
  * FL_ERROR_OUTPUT if it is a file.
  */
 bool fl_style_may_write(const char *folder, bool overwrite, GError **error);
-
-#endif

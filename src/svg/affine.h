@@ -1,6 +1,5 @@
 /* Affine maps of the plane. */
-#ifndef FLUIDY_SVG_AFFINE_H
-#define FLUIDY_SVG_AFFINE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -30,5 +29,3 @@ bool fl_affine_invert(const FlAffine *m, FlAffine *inverse);
 void fl_sincos_degrees(double degrees, double *sine, double *cosine);
 
 FlAffine fl_affine_rotation(double degrees);
-
-#endif

@@ -1,6 +1,5 @@
 /* The cascade [CSS Cascade 5]: style sheets, properties and units become plain SVG 1.1. */
-#ifndef FLUIDY_SVG_CASCADE_H
-#define FLUIDY_SVG_CASCADE_H
+#pragma once
 
 #include "svg/smil.h"
 
@@ -19,5 +18,3 @@
  */
 bool fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFilmLength *length,
                 GPtrArray *files, FlWarnings *warnings, GError **error);
-
-#endif

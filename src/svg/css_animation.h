@@ -1,6 +1,5 @@
 /* Animations of CSS [CSS Animations 1]: what @keyframes make of a value at one moment. */
-#ifndef FLUIDY_SVG_CSS_ANIMATION_H
-#define FLUIDY_SVG_CSS_ANIMATION_H
+#pragma once
 
 #include "svg/css_sheet.h"
 #include "svg/css_value.h"
@@ -42,5 +41,3 @@ void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet
                              double seconds, const FlCssContext *context, FlFilmLength *length);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlCssAnimations, fl_css_animations_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* Colours of CSS [CSS Color 4 and 5], as sRGB. */
-#ifndef FLUIDY_SVG_CSS_COLOUR_H
-#define FLUIDY_SVG_CSS_COLOUR_H
+#pragma once
 
 #include "svg/css_scan.h"
 #include <stdint.h>
@@ -23,5 +22,3 @@ char *fl_css_colour_with(const char *text, const char *current);
 
 /** The same with components of linear light; NULL if it is no colour alone. To be freed. */
 char *fl_css_colour_in_linear_light(const char *text);
-
-#endif

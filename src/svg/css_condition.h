@@ -1,6 +1,5 @@
 /* The conditions of @media [Media Queries 4] and @supports [CSS Conditional 4]. */
-#ifndef FLUIDY_SVG_CSS_CONDITION_H
-#define FLUIDY_SVG_CSS_CONDITION_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -14,5 +13,3 @@ bool fl_css_media_matches(const char *query, const FlCssPage *page);
 
 /** Returns: true if the condition of an @supports holds for this program. */
 bool fl_css_supports(const char *condition);
-
-#endif

@@ -1,6 +1,5 @@
 /* Properties of CSS that become other elements and attributes of SVG 1.1. */
-#ifndef FLUIDY_SVG_CSS_EFFECTS_H
-#define FLUIDY_SVG_CSS_EFFECTS_H
+#pragma once
 
 #include "svg/css_shapes.h"
 
@@ -19,5 +18,3 @@ const char *fl_css_effects_apply(GHashTable *effects, xmlNode *node, const FlCss
  * that differs by direction, the shape becomes a path in px of the page.
  */
 void fl_css_keep_strokes(xmlNode *root, const FlCssUnits *units);
-
-#endif

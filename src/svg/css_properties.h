@@ -1,6 +1,5 @@
 /* The CSS properties that determine how drawings look: kinds, initial values, inheritance. */
-#ifndef FLUIDY_SVG_CSS_PROPERTIES_H
-#define FLUIDY_SVG_CSS_PROPERTIES_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -39,5 +38,3 @@ char *fl_css_word(const FlCssProperty *property, const char *value);
 
 /** Returns: true if `value` can be one of the property, or is one for all properties. */
 bool fl_css_is_valid(const FlCssProperty *property, const char *value);
-
-#endif

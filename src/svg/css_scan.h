@@ -1,6 +1,5 @@
 /* Scans the text of style sheets and values [CSS Syntax 3] without building tokens. */
-#ifndef FLUIDY_SVG_CSS_SCAN_H
-#define FLUIDY_SVG_CSS_SCAN_H
+#pragma once
 
 #include <glib.h>
 #include <stdbool.h>
@@ -59,5 +58,3 @@ char *fl_css_string_or_url(const char *text);
 
 /** Likewise of the url(…) that *s begins with, which is skipped. */
 char *fl_css_take_url(const char **s);
-
-#endif

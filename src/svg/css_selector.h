@@ -1,6 +1,5 @@
 /* Selectors [Selectors 4, without :has], and whether an element matches one. */
-#ifndef FLUIDY_SVG_CSS_SELECTOR_H
-#define FLUIDY_SVG_CSS_SELECTOR_H
+#pragma once
 
 #include "svg/document.h"
 
@@ -32,5 +31,3 @@ typedef struct FlSelectorWork {
 
 /** Returns: true if `node`, an element, matches. */
 bool fl_selector_matches(const FlSelector *selector, const xmlNode *node, FlSelectorWork *work);
-
-#endif

@@ -1,6 +1,5 @@
 /* The geometry of shapes for the cascade: boxes, lengths, places on a path, outlines. */
-#ifndef FLUIDY_SVG_CSS_SHAPES_H
-#define FLUIDY_SVG_CSS_SHAPES_H
+#pragma once
 
 #include "svg/geometry.h"
 #include "svg/transform.h"
@@ -41,5 +40,3 @@ char *fl_css_outline_text(const FlOutlines *outlines, const FlAffine *map);
  * Returns: false if it cannot be read.
  */
 bool fl_css_position(const char *text, const FlCssUnits *units, FlCssBox box, FlPoint *place);
-
-#endif

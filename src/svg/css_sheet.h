@@ -1,6 +1,5 @@
 /* Style sheets as a list of rules: conditions decided, nesting and imports resolved. */
-#ifndef FLUIDY_SVG_CSS_SHEET_H
-#define FLUIDY_SVG_CSS_SHEET_H
+#pragma once
 
 #include "svg/css_condition.h"
 #include "svg/css_selector.h"
@@ -51,5 +50,3 @@ void fl_css_sheet_free(FlCssSheet *sheet); // NULL is fine
 GArray *fl_css_declarations(const char *text);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlCssSheet, fl_css_sheet_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* Values of CSS: variables, numbers with units and calc() [CSS Values 4]. */
-#ifndef FLUIDY_SVG_CSS_VALUE_H
-#define FLUIDY_SVG_CSS_VALUE_H
+#pragma once
 
 #include "svg/css_scan.h"
 
@@ -33,5 +32,3 @@ bool fl_css_number(const char *text, const FlCssUnits *units, double whole, doub
 
 /** The text of a number in as few digits as give it back within a millionth; to be freed. */
 char *fl_css_number_text(double value);
-
-#endif

@@ -1,6 +1,5 @@
 /* An SVG file as a DOM, read with limits: SVG files are untrusted. */
-#ifndef FLUIDY_SVG_DOCUMENT_H
-#define FLUIDY_SVG_DOCUMENT_H
+#pragma once
 
 #include "base/each.h"
 #include "base/warnings.h"
@@ -123,5 +122,3 @@ char *fl_reference_file(const char *from, const char *href, bool *is_there);
 
 /** Returns: true if a real path is in the folder of the drawing or in a folder below. */
 bool fl_reference_is_inside(const char *drawing, const char *file);
-
-#endif

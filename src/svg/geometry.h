@@ -1,6 +1,5 @@
 /* The outlines of a drawing's leaves, read from its document; motion is computed from them. */
-#ifndef FLUIDY_SVG_GEOMETRY_H
-#define FLUIDY_SVG_GEOMETRY_H
+#pragma once
 
 #include "svg/inherited.h"
 #include "svg/leaves.h"
@@ -76,5 +75,3 @@ FlPoint fl_cubic_at(const FlCubic *cubic, const FlAffine *ctm, double t);
 int fl_cubic_steps(const FlCubic *cubic, const FlAffine *ctm, double step_px);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlOutlines, fl_outlines_free)
-
-#endif

@@ -1,7 +1,6 @@
 /* The properties that elements of a drawing inherit: where they are, and what they are painted
  * with. */
-#ifndef FLUIDY_SVG_INHERITED_H
-#define FLUIDY_SVG_INHERITED_H
+#pragma once
 
 #include "svg/affine.h"
 #include "svg/document.h"
@@ -56,5 +55,3 @@ double fl_length_in(const FlInheritance *inheritance, const xmlNode *node, const
 
 /** A number or percentage within 0 … 1; without a number `initial`. */
 double fl_share_in(const xmlNode *node, const char *name, double initial);
-
-#endif

@@ -1,6 +1,5 @@
 /* Documents that are films: layers, pages, or animations that play. */
-#ifndef FLUIDY_SVG_INNER_FRAMES_H
-#define FLUIDY_SVG_INNER_FRAMES_H
+#pragma once
 
 #include "svg/document.h"
 #include <fluidy/render.h>
@@ -50,5 +49,3 @@ bool fl_select_page(xmlDoc *doc, int page, const char *path, GError **error);
  * Returns: false with FL_ERROR_INPUT, naming `path`, if there is no such frame.
  */
 bool fl_layer_frames_select(xmlDoc *doc, int frame, const char *path, GError **error);
-
-#endif

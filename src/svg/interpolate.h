@@ -1,6 +1,5 @@
 /* Values between two others, as SMIL and CSS animations want them. */
-#ifndef FLUIDY_SVG_INTERPOLATE_H
-#define FLUIDY_SVG_INTERPOLATE_H
+#pragma once
 
 #include "svg/css_value.h"
 
@@ -38,5 +37,3 @@ char *fl_interpolate_functions(const char *a, const char *b, double p, char sepa
  * functions are decomposed in a box of units->width x height. To be freed; NULL: not readable.
  */
 char *fl_interpolate_transform(const char *a, const char *b, double p, const FlCssUnits *units);
-
-#endif

@@ -1,6 +1,5 @@
 /* Meaningful names: layer labels and ids that people gave, not generated ones. */
-#ifndef FLUIDY_SVG_LABELS_H
-#define FLUIDY_SVG_LABELS_H
+#pragma once
 
 #include <libxml/tree.h>
 #include <stdbool.h>
@@ -16,5 +15,3 @@
  * Returns: to be freed with g_free(); NULL if there is no meaningful name.
  */
 char *fl_label_of(const xmlNode *node, const char *id, bool *is_layer);
-
-#endif

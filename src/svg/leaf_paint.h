@@ -1,6 +1,5 @@
 /* The computed paint of a leaf, read from the document as the cascade left it. */
-#ifndef FLUIDY_SVG_LEAF_PAINT_H
-#define FLUIDY_SVG_LEAF_PAINT_H
+#pragma once
 
 #include "base/blend_mode.h"
 #include <glib.h>
@@ -45,5 +44,3 @@ typedef struct FlPainted {
 #define FL_MOST_PARTS 2
 
 void fl_svg_paint_clear(FlSvgPaint *paint);
-
-#endif

@@ -1,6 +1,5 @@
 /* The leaves of a normalised document: what is drawn, one shape at a time, from the bottom up. */
-#ifndef FLUIDY_SVG_LEAVES_H
-#define FLUIDY_SVG_LEAVES_H
+#pragma once
 
 #include "svg/document.h"
 
@@ -68,5 +67,3 @@ FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole, GHashTable *ids);
 void fl_leaves_free(FlLeaves *leaves); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlLeaves, fl_leaves_free)
-
-#endif

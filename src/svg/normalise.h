@@ -1,6 +1,5 @@
 /* Rewrites a document so that each shape can be rendered alone and the picture stays the same. */
-#ifndef FLUIDY_SVG_NORMALISE_H
-#define FLUIDY_SVG_NORMALISE_H
+#pragma once
 
 #include "svg/document.h"
 
@@ -31,5 +30,3 @@ bool fl_is_eligible(const xmlNode *node);
 
 /** Returns: true if children of node are drawn only by reference: <defs>, <mask>, … */
 bool fl_is_undrawn(const xmlNode *node);
-
-#endif

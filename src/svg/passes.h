@@ -1,6 +1,5 @@
 /* The passes over a document between the cascade and its leaves. */
-#ifndef FLUIDY_SVG_PASSES_H
-#define FLUIDY_SVG_PASSES_H
+#pragma once
 
 #include "svg/document.h"
 
@@ -59,5 +58,3 @@ void fl_fonts_add(xmlDoc *doc, GPtrArray *files);
  * The picture is the same, since the document has no style sheets, which could match the groups.
  */
 void fl_document_branch(xmlDoc *doc);
-
-#endif

@@ -1,6 +1,5 @@
 /* The grammar of path data: its commands, and where a broken `d` breaks. */
-#ifndef FLUIDY_SVG_PATH_DATA_H
-#define FLUIDY_SVG_PATH_DATA_H
+#pragma once
 
 /** Receives one step: a command letter, lower case if relative, and its arguments (A has 7, Z has
  * 0). */
@@ -23,5 +22,3 @@ const char *fl_path_data_error(const char *d);
  * be freed.
  */
 char *fl_path_data_combine(const char *a, const char *b, double wa, double wb);
-
-#endif

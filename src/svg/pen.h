@@ -1,6 +1,5 @@
 /* Builds outlines of cubics from paths, rectangles, circles and polygons. */
-#ifndef FLUIDY_SVG_PEN_H
-#define FLUIDY_SVG_PEN_H
+#pragma once
 
 #include "svg/affine.h"
 #include <glib.h>
@@ -45,5 +44,3 @@ void fl_pen_rect(FlPen *pen, double x, double y, double w, double h, const doubl
 /** Adds the points attribute of a polyline or, if closed, of a polygon. Returns: false if there is
  * more than numbers in it. */
 bool fl_pen_points(FlPen *pen, const char *points, bool closed);
-
-#endif

@@ -1,7 +1,6 @@
 /* The pose of an outline: where it is and how it is turned, to be compared with that of another
  * frame. */
-#ifndef FLUIDY_SVG_POSE_H
-#define FLUIDY_SVG_POSE_H
+#pragma once
 
 #include "svg/geometry.h"
 
@@ -26,5 +25,3 @@ bool fl_pose_is_sound(const FlPose *pose);
 
 /** Of something that is known to be at a point. */
 FlPose fl_point_pose(FlPoint point);
-
-#endif

@@ -1,6 +1,5 @@
 /* Animations of SMIL [SVG 1.1 §19, SMIL 3]: a drawing at one moment. */
-#ifndef FLUIDY_SVG_SMIL_H
-#define FLUIDY_SVG_SMIL_H
+#pragma once
 
 #include "svg/smil_timing.h"
 
@@ -11,5 +10,3 @@
  * length: collects the ends and loops of the animations; may be NULL.
  */
 void fl_smil_apply(xmlDoc *doc, double seconds, FlFilmLength *length);
-
-#endif

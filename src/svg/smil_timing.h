@@ -1,6 +1,5 @@
 /* The times of SMIL animations [SMIL 3 §5.4]: the intervals in which each one is active. */
-#ifndef FLUIDY_SVG_SMIL_TIMING_H
-#define FLUIDY_SVG_SMIL_TIMING_H
+#pragma once
 
 #include "svg/document.h"
 
@@ -52,5 +51,3 @@ char *fl_trimmed_attribute(const xmlNode *node, const char *name);
 
 /** The element that a node's href points to, `missing` without href; NULL for an unknown one. */
 xmlNode *fl_timeline_referred(const FlTimeline *timeline, const xmlNode *node, xmlNode *missing);
-
-#endif

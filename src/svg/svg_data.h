@@ -1,6 +1,5 @@
 /* The data of an FlSvg and the librsvg handles that draw it; private to src/svg. */
-#ifndef FLUIDY_SVG_SVG_DATA_H
-#define FLUIDY_SVG_SVG_DATA_H
+#pragma once
 
 #include "base/surface.h"
 #include "svg/geometry.h"
@@ -45,5 +44,3 @@ void fl_svg_set_error(const FlSvg *svg, const GError *reason, GError **error);
 
 /** Frees the surfaces of all covers. */
 void fl_svg_drop_covers(FlSvg *svg);
-
-#endif

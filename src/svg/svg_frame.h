@@ -1,6 +1,5 @@
 /* One frame: an SVG file, normalised, whose leaves can be drawn one by one. */
-#ifndef FLUIDY_SVG_SVG_FRAME_H
-#define FLUIDY_SVG_SVG_FRAME_H
+#pragma once
 
 #include "base/surface.h"
 #include "svg/geometry.h"
@@ -84,5 +83,3 @@ RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, FlPageSize page);
 bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, FlPageSize page, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSvg, fl_svg_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* Affine maps as SVG and CSS write them. */
-#ifndef FLUIDY_SVG_TRANSFORM_H
-#define FLUIDY_SVG_TRANSFORM_H
+#pragma once
 
 #include "svg/affine.h"
 #include "svg/css_value.h"
@@ -24,5 +23,3 @@ char *fl_affine_text(const FlAffine *m);
 
 /** The transform of an element; the identity if librsvg rejects the attribute. */
 FlAffine fl_affine_of(const xmlNode *node);
-
-#endif

@@ -1,6 +1,5 @@
 /* <use>, which shows a copy of another element. */
-#ifndef FLUIDY_SVG_USE_H
-#define FLUIDY_SVG_USE_H
+#pragma once
 
 #include "svg/css_value.h"
 #include "svg/document.h"
@@ -30,5 +29,3 @@ void fl_use_place(xmlNode *use, const FlCssUnits *units);
 
 /** Makes each <use> with a copy a group that shows only the copy. */
 void fl_uses_make_groups(GHashTable *copies);
-
-#endif

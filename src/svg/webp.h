@@ -1,6 +1,5 @@
 /* WebP images in drawings, for which librsvg seldom has a decoder. */
-#ifndef FLUIDY_SVG_WEBP_H
-#define FLUIDY_SVG_WEBP_H
+#pragma once
 
 #include <glib.h>
 #include <stdbool.h>
@@ -11,5 +10,3 @@ bool fl_webp_size(const uint8_t *data, size_t bytes, int size[2]);
 
 /** The image as the data URI of a PNG; NULL: it is damaged, or an animation. */
 char *fl_webp_as_png(const uint8_t *data, size_t bytes);
-
-#endif

@@ -1,6 +1,5 @@
 /* The last field is carried along the drawing's motion: its matches, never its colours. */
-#ifndef FLUIDY_SYNTH_CARRY_H
-#define FLUIDY_SYNTH_CARRY_H
+#pragma once
 
 #include "synth/nnf.h"
 
@@ -58,5 +57,3 @@ bool fl_target_keep(FlTarget *target, const FlCarried *carried, const FlExemplar
 
 /** Gives the pixels that are kept their matches. */
 void fl_keep_matches(const FlTargetLevel *target, const FlNnf *carried, FlNnf *nnf);
-
-#endif

@@ -1,6 +1,5 @@
 /* Paint is wet where it is new or moves, and dries: the exemplar shows it fresh and dry. */
-#ifndef FLUIDY_SYNTH_DRYING_H
-#define FLUIDY_SYNTH_DRYING_H
+#pragma once
 
 #include "synth/carry.h"
 
@@ -53,5 +52,3 @@ void fl_drying_show(const FlDrying *drying, FlRect rect, const uint8_t *wet,
  */
 void fl_tone_picture(const uint8_t *tone, FlRect rect, int px, const uint8_t paper[3], int width,
                      int height, uint8_t *rgb);
-
-#endif

@@ -1,6 +1,5 @@
 /* The colours of an exemplar at twice its size, for pictures of twice the size of their field. */
-#ifndef FLUIDY_SYNTH_ENLARGEMENT_H
-#define FLUIDY_SYNTH_ENLARGEMENT_H
+#pragma once
 
 #include "style/style_guides.h"
 #include "synth/exemplar_level.h"
@@ -28,5 +27,3 @@ double fl_enlargement_bytes(const FlEnlargement *enlargement);
 bool fl_enlargement_seek(FlEnlargement *enlargement, int first, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlEnlargement, fl_enlargement_free)
-
-#endif

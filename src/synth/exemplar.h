@@ -1,6 +1,5 @@
 /* The exemplar: a style's frames and guides on every level, packed for the search. Read-only. */
-#ifndef FLUIDY_SYNTH_EXEMPLAR_H
-#define FLUIDY_SYNTH_EXEMPLAR_H
+#pragma once
 
 #include "style/style_guides.h"
 #include "synth/enlargement.h"
@@ -82,5 +81,3 @@ static inline int fl_field_side(const FlExemplar *exemplar, int side)
 int fl_levels_of(int width, int height);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlExemplar, fl_exemplar_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* One level of an exemplar: packed frames, and which of their pixels can be matched. */
-#ifndef FLUIDY_SYNTH_EXEMPLAR_LEVEL_H
-#define FLUIDY_SYNTH_EXEMPLAR_LEVEL_H
+#pragma once
 
 #include "synth/pyramid.h"
 
@@ -95,5 +94,3 @@ void fl_exemplar_level_merge(FlExemplarLevel *level, int t);
 
 /** Lists the pixels of each segment in the window anew. FL_ERROR_NO_MEMORY. */
 bool fl_exemplar_level_list(FlExemplarLevel *level, GError **error);
-
-#endif

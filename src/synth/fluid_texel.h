@@ -1,7 +1,6 @@
 /* The texels that LazyFluids compares: pixels of exemplar and target, packed for the retrieval [L15
  * §4]. */
-#ifndef FLUIDY_SYNTH_FLUID_TEXEL_H
-#define FLUIDY_SYNTH_FLUID_TEXEL_H
+#pragma once
 
 #include "synth/rotation.h"
 #include <stddef.h>
@@ -53,5 +52,3 @@ uint32_t fl_fluid_distance_c(const FlFluidTexel source[FL_PATCH_PIXELS], const F
                              ptrdiff_t pitch, uint32_t limit);
 uint32_t fl_fluid_distance_avx2(const FlFluidTexel source[FL_PATCH_PIXELS],
                                 const FlFluidTexel *target, ptrdiff_t pitch, uint32_t limit);
-
-#endif

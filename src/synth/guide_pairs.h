@@ -1,6 +1,5 @@
 /* The input of a frame's synthesis, as pictures that other programs of guided synthesis read. */
-#ifndef FLUIDY_SYNTH_GUIDE_PAIRS_H
-#define FLUIDY_SYNTH_GUIDE_PAIRS_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -55,5 +54,3 @@ static inline uint8_t fl_guide_byte(float value)
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlGuidePairs, fl_guide_pairs_clear)
-
-#endif

@@ -1,6 +1,5 @@
 /* The inner loops of search and vote, once in C and once per instruction set. */
-#ifndef FLUIDY_SYNTH_KERNELS_H
-#define FLUIDY_SYNTH_KERNELS_H
+#pragma once
 
 #include "base/row_kernels.h"
 #include "synth/fluid_texel.h"
@@ -239,5 +238,3 @@ bool fl_vote_doubled_c(const FlVoteMatches *covering, const FlVoteSource *voted,
                        float colour[4][4]);
 bool fl_vote_doubled_avx2(const FlVoteMatches *covering, const FlVoteSource *voted,
                           float colour[4][4]);
-
-#endif

@@ -1,6 +1,5 @@
 /* Nearest-neighbour field: which rotated exemplar patch explains each target patch. */
-#ifndef FLUIDY_SYNTH_NNF_H
-#define FLUIDY_SYNTH_NNF_H
+#pragma once
 
 #include "synth/target.h"
 
@@ -62,5 +61,3 @@ FlMatch fl_match_enlarged(FlMatch match, int l, const FlExemplarLevel *full);
 void fl_nnf_downscale(const FlNnf *full, int l, const FlExemplarLevel *level, FlNnf *coarse);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlNnf, fl_nnf_clear)
-
-#endif

@@ -1,6 +1,5 @@
 /* The use of each part of the exemplar: the uniformity term [F21 §3.5]. */
-#ifndef FLUIDY_SYNTH_OCCURRENCE_H
-#define FLUIDY_SYNTH_OCCURRENCE_H
+#pragma once
 
 #include "synth/nnf.h"
 
@@ -85,5 +84,3 @@ static inline uint32_t fl_occurrence_cost(const FlOccurrence *map, FlSegment seg
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlOccurrence, fl_occurrence_clear)
-
-#endif

@@ -1,6 +1,5 @@
 /* The cost of a match: the terms of the energy that a patch has by itself [F21 eq. 2]. */
-#ifndef FLUIDY_SYNTH_PATCH_COST_H
-#define FLUIDY_SYNTH_PATCH_COST_H
+#pragma once
 
 #include "synth/occurrence.h"
 
@@ -88,5 +87,3 @@ double fl_mean_cost(const FlSearch *search);
  * takes the place of the pixel's own [F21 §3.6]; NULL: there is no such field.
  */
 void fl_search_costs(FlSearch *search, const FlNnf *previous);
-
-#endif

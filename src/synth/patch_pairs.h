@@ -1,6 +1,5 @@
 /* The guides of [F21] as pairs of pictures. */
-#ifndef FLUIDY_SYNTH_PATCH_PAIRS_H
-#define FLUIDY_SYNTH_PATCH_PAIRS_H
+#pragma once
 
 #include "synth/guide_pairs.h"
 #include "synth/nnf.h"
@@ -14,5 +13,3 @@
  */
 bool fl_patch_pairs(const FlExemplar *exemplar, const FlParams *params, const FlTarget *target,
                     const FlNnf *nnf, int width, int height, FlGuidePairs *pairs, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* PatchMatch over frames and rotations [Barnes09, Barnes10; F21 §4]. */
-#ifndef FLUIDY_SYNTH_PATCHMATCH_H
-#define FLUIDY_SYNTH_PATCHMATCH_H
+#pragma once
 
 #include "synth/patch_cost.h"
 
@@ -10,5 +9,3 @@
  * between classes. So the result does not depend on the number of threads.
  */
 FlSearchCounts fl_search_run(FlSearch *search, int sweeps);
-
-#endif

@@ -1,6 +1,5 @@
 /* The channels of one frame at one level as float planes, and their pyramid. */
-#ifndef FLUIDY_SYNTH_PYRAMID_H
-#define FLUIDY_SYNTH_PYRAMID_H
+#pragma once
 
 #include "base/rect.h"
 #include "guides/guides.h"
@@ -62,5 +61,3 @@ static inline uint8_t fl_texel_channel(float value)
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlPyramid, fl_pyramid_clear)
-
-#endif

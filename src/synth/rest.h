@@ -1,6 +1,5 @@
 /* Regions at rest: what has not moved is painted as it was. */
-#ifndef FLUIDY_SYNTH_REST_H
-#define FLUIDY_SYNTH_REST_H
+#pragma once
 
 #include "guides/guides.h"
 
@@ -38,5 +37,3 @@ static inline int fl_rest_depth(uint8_t shape)
  */
 bool fl_rests(const FlGuides *guides, const FlRestRule *rule, const uint8_t *last_shape,
               const uint8_t *last_wet);
-
-#endif

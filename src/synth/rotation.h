@@ -1,6 +1,5 @@
 /* Angles of 256 steps a turn, and the patch offsets rotated by them. */
-#ifndef FLUIDY_SYNTH_ROTATION_H
-#define FLUIDY_SYNTH_ROTATION_H
+#pragma once
 
 #include <stdint.h>
 
@@ -63,5 +62,3 @@ static inline int fl_angle_distance(uint8_t angle)
 {
     return angle < 128 ? angle : 256 - angle;
 }
-
-#endif

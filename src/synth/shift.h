@@ -1,6 +1,5 @@
 /* From frame to frame: matches move on in the exemplar's time [F21 §3.4]. */
-#ifndef FLUIDY_SYNTH_SHIFT_H
-#define FLUIDY_SYNTH_SHIFT_H
+#pragma once
 
 #include "synth/nnf.h"
 
@@ -40,5 +39,3 @@ typedef struct FlTemporalTrust {
  */
 float fl_temporal_weight(const FlExemplar *exemplar, FlMatch shifted, float target_distance_px,
                          const FlTemporalTrust *trust);
-
-#endif

@@ -1,6 +1,5 @@
 /* Interpolating cubic splines: the exemplar between its pixels, without blur [Unser99]. */
-#ifndef FLUIDY_SYNTH_SPLINE_H
-#define FLUIDY_SYNTH_SPLINE_H
+#pragma once
 
 #include <stdint.h>
 
@@ -33,5 +32,3 @@ void fl_spline_prefilter(float *const *plane, int n, int width, int height,
 /** Those of one plane, as channel c; the others stay. */
 void fl_spline_prefilter_channel(float *plane, int c, int width, int height,
                                  FlSplinePixel *coefficients, int pitch);
-
-#endif

@@ -1,6 +1,5 @@
 /* One region, frame by frame: the optimisation of [F21 App. B]. */
-#ifndef FLUIDY_SYNTH_SYNTH_H
-#define FLUIDY_SYNTH_SYNTH_H
+#pragma once
 
 #include "base/error.h"
 #include "synth/guide_pairs.h"
@@ -67,5 +66,3 @@ GBytes *fl_synth_save(FlSynth *synth, GError **error);
 bool fl_synth_load(FlSynth *synth, GBytes *state, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSynth, fl_synth_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* The data of an FlSynth; private to synth/. */
-#ifndef FLUIDY_SYNTH_SYNTH_DATA_H
-#define FLUIDY_SYNTH_SYNTH_DATA_H
+#pragma once
 
 #include "base/error.h"
 #include "synth/rest.h"
@@ -37,5 +36,3 @@ static inline double fl_lap(gint64 *since)
     *since = now;
     return (double)(now - before) * 1e-6;
 }
-
-#endif

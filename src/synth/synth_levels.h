@@ -1,6 +1,5 @@
 /* The levels of a frame, from coarse to fine [F21 App. B]; private to synth/. */
-#ifndef FLUIDY_SYNTH_SYNTH_LEVELS_H
-#define FLUIDY_SYNTH_SYNTH_LEVELS_H
+#pragma once
 
 #include "synth/carry.h"
 #include "synth/patchmatch.h"
@@ -41,5 +40,3 @@ typedef struct FlEnergy {
  * costs: scratch, width * height. Takes about a fifth of a sweep's time.
  */
 void fl_energy_of(const FlSearch *search, FlTargetLevel *target, uint32_t *costs, FlEnergy *energy);
-
-#endif

@@ -1,6 +1,5 @@
 /* The state of a region between two frames, as bytes, for a later render that resumes. */
-#ifndef FLUIDY_SYNTH_SYNTH_STATE_H
-#define FLUIDY_SYNTH_SYNTH_STATE_H
+#pragma once
 
 #include "synth/nnf.h"
 
@@ -42,5 +41,3 @@ GBytes *fl_synth_state_pack(const FlSynthState *state, GError **error);
  */
 bool fl_synth_state_unpack(FlSynthState *state, GBytes *bytes, const FlExemplarLevel *level,
                            GError **error);
-
-#endif

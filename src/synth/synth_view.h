@@ -1,6 +1,5 @@
 /* The synthesis of a frame, for inspection: statistics and fields. */
-#ifndef FLUIDY_SYNTH_SYNTH_VIEW_H
-#define FLUIDY_SYNTH_SYNTH_VIEW_H
+#pragma once
 
 #include "synth/patchmatch.h"
 
@@ -33,5 +32,3 @@ typedef struct FlSynthView {
 
 /** The synthesis of one region: it keeps the state of the last frame. */
 typedef struct FlSynth FlSynth;
-
-#endif

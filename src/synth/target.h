@@ -1,6 +1,5 @@
 /* The target: one region of one frame on every level, in the layout that the search reads. */
-#ifndef FLUIDY_SYNTH_TARGET_H
-#define FLUIDY_SYNTH_TARGET_H
+#pragma once
 
 #include "base/blocks.h"
 #include "synth/exemplar.h"
@@ -99,5 +98,3 @@ typedef struct FlTargetPatch {
 void fl_target_gather(const FlTargetLevel *level, int x, int y, FlTargetPatch *patch);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlTarget, fl_target_clear)
-
-#endif

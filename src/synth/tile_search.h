@@ -1,6 +1,5 @@
 /* The pixels of a tile: propagation and random search. */
-#ifndef FLUIDY_SYNTH_TILE_SEARCH_H
-#define FLUIDY_SYNTH_TILE_SEARCH_H
+#pragma once
 
 #include "synth/patch_cost.h"
 
@@ -21,5 +20,3 @@ void fl_tile_search_init(FlTileSearch *tile_search, const FlSearch *search);
  */
 void fl_tile_search_run(const FlTileSearch *tile_search, const uint32_t *tiles, int n, int sweep,
                         FlSearchCounts *counts);
-
-#endif

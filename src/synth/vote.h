@@ -1,6 +1,5 @@
 /* From a field to colours: every patch votes for the pixels it covers [WSI07; F21 §3.4]. */
-#ifndef FLUIDY_SYNTH_VOTE_H
-#define FLUIDY_SYNTH_VOTE_H
+#pragma once
 
 #include "base/blocks.h"
 #include "synth/nnf.h"
@@ -46,5 +45,3 @@ static inline uint8_t fl_vote_byte(float value)
 {
     return (uint8_t)(value * 255 + 0.5f);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The colours that votes give, by a version's own clustering and sampling, which are inlined. */
-#ifndef FLUIDY_SYNTH_VOTE_KERNEL_H
-#define FLUIDY_SYNTH_VOTE_KERNEL_H
+#pragma once
 
 #include "synth/kernels.h"
 
@@ -108,5 +107,3 @@ static inline bool fl_vote_doubled_of(const FlVoteMatches *covering, FlClusterVo
         colour_of(&sum[child], colour[child]);
     return n > 0;
 }
-
-#endif

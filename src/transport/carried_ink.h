@@ -1,6 +1,5 @@
 /* One region, frame by frame: its ink is moved by a tile that rides on the drawing. */
-#ifndef FLUIDY_TRANSPORT_CARRIED_INK_H
-#define FLUIDY_TRANSPORT_CARRIED_INK_H
+#pragma once
 
 #include "guides/guides.h"
 #include "transport/tile.h"
@@ -41,5 +40,3 @@ GBytes *fl_carried_ink_save(const FlCarriedInk *ink, GError **error);
 
 /** FL_ERROR_CHANGED if the bytes are not a state of this region; they need not be trusted. */
 bool fl_carried_ink_load(FlCarriedInk *ink, GBytes *state, GError **error);
-
-#endif

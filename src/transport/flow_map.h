@@ -1,6 +1,5 @@
 /* Conservative transport: ink is carried along a velocity field and piles up or thins out. */
-#ifndef FLUIDY_TRANSPORT_FLOW_MAP_H
-#define FLUIDY_TRANSPORT_FLOW_MAP_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -36,5 +35,3 @@ bool fl_flow_map_adjoint(const FlFlowMap *map, const float *by_jacobian, float *
                          GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFlowMap, fl_flow_map_clear)
-
-#endif

@@ -1,6 +1,5 @@
 /* Maps each pixel of a region to its material, so that the pattern moves with the drawing. */
-#ifndef FLUIDY_TRANSPORT_MATERIAL_H
-#define FLUIDY_TRANSPORT_MATERIAL_H
+#pragma once
 
 #include "base/rect.h"
 #include "guides/guides.h"
@@ -63,5 +62,3 @@ bool fl_material_relaxed(const FlMaterial *material, const FlGuides *guides, FlM
 
 void fl_material_clear(FlMaterial *material);
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlMaterial, fl_material_clear)
-
-#endif

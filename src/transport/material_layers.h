@@ -1,6 +1,5 @@
 /* Two layers of material over a region: where one is strained, the other fades in, freshly laid. */
-#ifndef FLUIDY_TRANSPORT_MATERIAL_LAYERS_H
-#define FLUIDY_TRANSPORT_MATERIAL_LAYERS_H
+#pragma once
 
 #include "transport/material.h"
 
@@ -25,5 +24,3 @@ void fl_material_layers_weights(const FlMaterialLayers *layers, size_t p, float 
 
 void fl_material_layers_clear(FlMaterialLayers *layers);
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlMaterialLayers, fl_material_layers_clear)
-
-#endif

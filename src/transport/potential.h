@@ -1,7 +1,6 @@
 /* The potential whose gradient moves the ink: a sum of grids of 2, 4, 8 and 16 px [KAGS19].
  */
-#ifndef FLUIDY_TRANSPORT_POTENTIAL_H
-#define FLUIDY_TRANSPORT_POTENTIAL_H
+#pragma once
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -32,5 +31,3 @@ void fl_potential_sum(const FlPotential *potential, float *sum);
 void fl_potential_adjoint(float *by_sum, FlPotential *by_node);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlPotential, fl_potential_clear)
-
-#endif

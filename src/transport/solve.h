@@ -1,6 +1,5 @@
 /* Finds the potential that moves ink, which lies evenly, so that it makes a picture. */
-#ifndef FLUIDY_TRANSPORT_SOLVE_H
-#define FLUIDY_TRANSPORT_SOLVE_H
+#pragma once
 
 #include "transport/flow_map.h"
 #include "transport/potential.h"
@@ -22,5 +21,3 @@ typedef struct FlTransportProblem {
  */
 bool fl_transport_solve(const FlTransportProblem *problem, float effort, FlPotential *potential,
                         FlTransportProgress progress, void *data, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* A style's potential tile: how its ink is displaced, solved once on a torus. */
-#ifndef FLUIDY_TRANSPORT_TILE_H
-#define FLUIDY_TRANSPORT_TILE_H
+#pragma once
 
 #include "style/style_folder.h"
 #include "transport/solve.h"
@@ -36,5 +35,3 @@ void fl_tile_gradient(const FlTile *tile, float x, float y, float gradient[2]);
 
 void fl_tile_free(FlTile *tile); // NULL is fine
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlTile, fl_tile_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* Brush strokes: the events of a recipe, which add water and pigment to the sheet. */
-#ifndef FLUIDY_WATERCOLOUR_BRUSH_H
-#define FLUIDY_WATERCOLOUR_BRUSH_H
+#pragma once
 
 #include "watercolour/sheet.h"
 
@@ -27,5 +26,3 @@ void fl_brush_free(FlBrush *brush); // NULL is fine
 void fl_brush_apply(const FlBrush *brush, FlSheet *sheet, float before, float after);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlBrush, fl_brush_free)
-
-#endif

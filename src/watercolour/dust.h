@@ -1,6 +1,5 @@
 /* Dry medium: grains that break off a stroke of charcoal or pastel and drift along the tooth. */
-#ifndef FLUIDY_WATERCOLOUR_DUST_H
-#define FLUIDY_WATERCOLOUR_DUST_H
+#pragma once
 
 #include "watercolour/brush.h"
 
@@ -27,5 +26,3 @@ void fl_dust_drift(FlDustCloud *cloud, const FlSheet *sheet, int frame);
 void fl_dust_lay(const FlDustCloud *cloud, FlSheet *sheet);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlDustCloud, fl_dust_free)
-
-#endif

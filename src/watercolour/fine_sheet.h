@@ -1,6 +1,5 @@
 /* The sheet on a finer grid: what lies within its cells. */
-#ifndef FLUIDY_WATERCOLOUR_FINE_SHEET_H
-#define FLUIDY_WATERCOLOUR_FINE_SHEET_H
+#pragma once
 
 #include "watercolour/sheet.h"
 
@@ -33,5 +32,3 @@ void fl_fine_sheet_follow(FlFineSheet *fine, const FlSheet *sheet);
 FlSheet *fl_fine_sheet(FlFineSheet *fine);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlFineSheet, fl_fine_sheet_free)
-
-#endif

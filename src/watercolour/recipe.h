@@ -1,6 +1,5 @@
 /* A recipe: all parameters of a simulated style, read from a key file. */
-#ifndef FLUIDY_WATERCOLOUR_RECIPE_H
-#define FLUIDY_WATERCOLOUR_RECIPE_H
+#pragma once
 
 #include "compose/pigments.h"
 #include "style/style_folder.h"
@@ -94,5 +93,3 @@ FlRecipe *fl_recipe_load(const char *path, GError **error);
 void fl_recipe_free(FlRecipe *recipe); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlRecipe, fl_recipe_free)
-
-#endif

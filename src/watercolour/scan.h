@@ -1,6 +1,5 @@
 /* A picture of the sheet: Kubelka-Munk colour, and the mask. */
-#ifndef FLUIDY_WATERCOLOUR_SCAN_H
-#define FLUIDY_WATERCOLOUR_SCAN_H
+#pragma once
 
 #include "watercolour/sheet.h"
 
@@ -24,5 +23,3 @@ void fl_scan_free(FlScan *scan); // NULL is fine
 bool fl_scan_draw(FlScan *scan, const FlSheet *sheet, const FlRecipe *recipe, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlScan, fl_scan_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* The sheet of paper: the layers of [C97 §4] as grids. */
-#ifndef FLUIDY_WATERCOLOUR_SHEET_H
-#define FLUIDY_WATERCOLOUR_SHEET_H
+#pragma once
 
 #include "watercolour/recipe.h"
 
@@ -39,5 +38,3 @@ void fl_sheet_free(FlSheet *sheet); // NULL is fine
 void fl_sheet_make_paper(FlSheet *sheet, const FlRecipe *recipe);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSheet, fl_sheet_free)
-
-#endif

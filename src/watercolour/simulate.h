@@ -1,6 +1,5 @@
 /* The simulation of a recipe into memory. */
-#ifndef FLUIDY_WATERCOLOUR_SIMULATE_H
-#define FLUIDY_WATERCOLOUR_SIMULATE_H
+#pragma once
 
 #include "style/style_folder.h"
 #include "watercolour/recipe.h"
@@ -21,5 +20,3 @@ double fl_recipe_seconds(const FlRecipe *recipe, int size);
  */
 FlStyle *fl_recipe_paint(const FlRecipe *recipe, const char *path, int size,
                          FlWatercolourProgress progress, void *data, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* The stages of one step of the simulation, in their order [C97 §4]. */
-#ifndef FLUIDY_WATERCOLOUR_STAGES_H
-#define FLUIDY_WATERCOLOUR_STAGES_H
+#pragma once
 
 #include "watercolour/sheet.h"
 
@@ -26,5 +25,3 @@ void fl_transfer_pigment(FlSheet *sheet, const FlPigment *pigments, const FlFlow
 
 /** Moves water with its pigment through the paper [C97 §4.6]. */
 void fl_capillary_flow(FlSheet *sheet, const FlFlow *flow);
-
-#endif

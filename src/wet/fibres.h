@@ -1,6 +1,5 @@
 /* The paper that water runs along: fibres in all directions, hollows, and spots that dry late. */
-#ifndef FLUIDY_WET_FIBRES_H
-#define FLUIDY_WET_FIBRES_H
+#pragma once
 
 #include "svg/affine.h"
 #include <stdint.h>
@@ -23,5 +22,3 @@ float fl_fibres_hollow(const FlFibres *fibres, float x, float y);
 
 /** The same of spots, which are a few times as large. */
 float fl_fibres_spot(const FlFibres *fibres, float x, float y);
-
-#endif

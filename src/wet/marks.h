@@ -1,7 +1,6 @@
 /* The marks of a moving region on the paper: a front where it advances, a stain where it recedes.
  */
-#ifndef FLUIDY_WET_MARKS_H
-#define FLUIDY_WET_MARKS_H
+#pragma once
 
 #include "style/style_folder.h"
 #include "wet/moving_edge.h"
@@ -42,5 +41,3 @@ void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
  * away: a shape that vanishes leaves no outline. */
 void fl_marks_lose_fronts(const FlWetShape *shape, const FlMovingEdge *edge, const GArray *fronts,
                           GArray *marks);
-
-#endif

@@ -1,6 +1,5 @@
 /* The contour of a region in a frame: its advance and retreat over the paper. */
-#ifndef FLUIDY_WET_MOVING_EDGE_H
-#define FLUIDY_WET_MOVING_EDGE_H
+#pragma once
 
 #include "base/rect.h"
 #include "compose/laid.h"
@@ -93,5 +92,3 @@ bool fl_moving_edge_init(FlMovingEdge *edge, const FlWetShape *shape, const FlMo
 void fl_moving_edge_clear(FlMovingEdge *edge);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlMovingEdge, fl_moving_edge_clear)
-
-#endif

@@ -1,6 +1,5 @@
 /* The wet paper of a film: which regions mark it in each frame, and how it dries. */
-#ifndef FLUIDY_WET_WET_H
-#define FLUIDY_WET_WET_H
+#pragma once
 
 #include "wet/wet_data.h"
 
@@ -55,5 +54,3 @@ bool fl_contacts_find(FlContacts *contacts, const FlShapes *shapes, const FlComp
                       const FlDrawList *draws, int frame, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlWet, fl_wet_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* The data of an FlWet; private to wet/. */
-#ifndef FLUIDY_WET_WET_DATA_H
-#define FLUIDY_WET_WET_DATA_H
+#pragma once
 
 #include "compose/compose_input.h"
 #include "job/region_plan.h"
@@ -89,5 +88,3 @@ bool fl_wet_mark_one(void *data, int m, int thread, GError **error);
 
 /** Makes wet->ink that of the fills. */
 void fl_wet_take_fills(FlWet *wet);
-
-#endif

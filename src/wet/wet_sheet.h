@@ -1,7 +1,6 @@
 /* The paper below a film, from frame to frame: wet fronts, and stains of paint that has moved on.
  */
-#ifndef FLUIDY_WET_WET_SHEET_H
-#define FLUIDY_WET_WET_SHEET_H
+#pragma once
 
 #include "compose/compose_input.h"
 #include "wet/fibres.h"
@@ -86,5 +85,3 @@ void fl_wet_sheet_wet(FlWetSheet *sheet, const FlFrontStyle *style, float frames
  */
 bool fl_wet_sheet_layer(const FlWetSheet *sheet, const uint8_t paper[3], FlStainLayer *layer,
                         GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* A frame as pictures: what is drawn of each region, from the bottom up. */
-#ifndef FLUIDY_WORKER_DRAWS_H
-#define FLUIDY_WORKER_DRAWS_H
+#pragma once
 
 #include "base/page.h"
 #include "base/rect.h"
@@ -67,5 +66,3 @@ void fl_draw_clear(FlDraw *draw);
 void fl_draw_list_free(FlDrawList *draws); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlDrawList, fl_draw_list_free)
-
-#endif

@@ -1,6 +1,5 @@
 /* The parts of a frame: where they are, with which paint, and how they are called. */
-#ifndef FLUIDY_WORKER_FRAME_PARTS_H
-#define FLUIDY_WORKER_FRAME_PARTS_H
+#pragma once
 
 #include "svg/pose.h"
 #include "svg/svg_frame.h"
@@ -59,5 +58,3 @@ typedef struct FlShape {
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlStrings, fl_strings_clear)
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlSurveyFrame, fl_survey_frame_clear)
-
-#endif

@@ -1,6 +1,5 @@
 /* Kept lines and small flat shapes as a hand draws them: how much of each covered pixel is left. */
-#ifndef FLUIDY_WORKER_HAND_LINE_H
-#define FLUIDY_WORKER_HAND_LINE_H
+#pragma once
 
 #include "base/page.h"
 #include "base/rect.h"
@@ -88,5 +87,3 @@ typedef struct FlHandLine {
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */
 bool fl_hand_line_draw(const FlHandLine *hand, FlRect box, uint8_t *coverage, GError **error);
-
-#endif

@@ -1,6 +1,5 @@
 /* Requests to workers and their answers: the one wire format between host and worker. */
-#ifndef FLUIDY_WORKER_MESSAGES_H
-#define FLUIDY_WORKER_MESSAGES_H
+#pragma once
 
 #include "base/reader.h"
 #include "base/warnings.h"
@@ -97,5 +96,3 @@ FlDrawList *fl_draws_unpack(const void *packed, size_t bytes, const FlDrawBounds
                             GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlRequest, fl_request_clear)
-
-#endif

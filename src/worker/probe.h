@@ -1,6 +1,5 @@
 /* Probes a frame on a small picture: its parts, their boxes, and the picture they add up to. */
-#ifndef FLUIDY_WORKER_PROBE_H
-#define FLUIDY_WORKER_PROBE_H
+#pragma once
 
 #include "worker/frame_parts.h"
 #include "worker/raster.h"
@@ -93,5 +92,3 @@ bool fl_frame_probe_run(FlFrameProbe *probe, GError **error);
 
 void fl_frame_probe_clear(FlFrameProbe *probe);
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFrameProbe, fl_frame_probe_clear)
-
-#endif

@@ -1,6 +1,5 @@
 /* A process that starts workers, and the worker itself. */
-#ifndef FLUIDY_WORKER_PROCESS_H
-#define FLUIDY_WORKER_PROCESS_H
+#pragma once
 
 #include <glib.h>
 #include <stdbool.h>
@@ -59,5 +58,3 @@ bool fl_memory_file_set(int file, const void *data, size_t bytes);
 
 /** All of its contents and a final NUL, to be freed with free(); NULL: no memory. */
 uint8_t *fl_memory_file_get(int file, size_t *bytes);
-
-#endif

@@ -1,6 +1,5 @@
 /* Boxes of a surface, and compositing of pixels. */
-#ifndef FLUIDY_WORKER_RASTER_H
-#define FLUIDY_WORKER_RASTER_H
+#pragma once
 
 #include "base/rect.h"
 #include "base/surface.h"
@@ -39,5 +38,3 @@ static inline void fl_straighten(uint32_t pixel, uint8_t alpha, uint8_t out[4])
         out[c] = (uint8_t)(a ? MIN(255, (((pixel >> (16 - 8 * c)) & 255) * 255 + a / 2) / a) : 0);
     out[3] = alpha;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The work of a worker: from the bytes of a request to those of its answer. */
-#ifndef FLUIDY_WORKER_VERBS_H
-#define FLUIDY_WORKER_VERBS_H
+#pragma once
 
 #include "worker/messages.h"
 
@@ -35,5 +34,3 @@ void fl_keep_whole(FlSurveyFrame *frame, const char *group);
 FlDrawList *fl_draw_frame(const FlRequest *request, GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlServant, fl_servant_clear)
-
-#endif

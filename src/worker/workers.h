@@ -1,6 +1,5 @@
 /* Sandboxed processes that read and draw strangers' files, which may crash, hang or be hijacked. */
-#ifndef FLUIDY_WORKER_WORKERS_H
-#define FLUIDY_WORKER_WORKERS_H
+#pragma once
 
 #include "base/file.h"
 #include "worker/messages.h"
@@ -56,5 +55,3 @@ void fl_workers_free(FlWorkers *workers); // NULL is fine
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlAnswer, fl_answer_clear)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlWorkers, fl_workers_free)
-
-#endif
