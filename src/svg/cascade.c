@@ -421,24 +421,21 @@ static void take_value(void *data, const char *name, char *text)
 static bool animate(Cascade *c, const xmlNode *node, GArray *values, const Style *style,
                     GPtrArray *owned)
 {
-    g_autoptr(FlCssAnimations) animations = NULL;
+    g_autoptr(GArray) declared = g_array_new(FALSE, FALSE, sizeof(FlCssDeclaration));
     Animated animated = {c, node, values, owned};
     FL_EACH (const Value, v, values) {
         if (!v->property || v->property->kind != FL_CSS_ANIMATION)
             continue;
         char *text = fl_css_substitute(v->text, find_variable, style);
-        if (!animations)
-            animations = fl_css_animations_new();
+        const FlCssDeclaration d = {v->name, text, false};
         if (text)
-            fl_css_animations_set(animations, v->name, text);
-        g_free(text);
+            g_ptr_array_add(owned, text), g_array_append_val(declared, d);
     }
-    if (animations)
-        fl_css_animations_apply(animations, c->sheet, c->seconds,
-                                &(FlCssContext){&style->units, find_variable, style,
-                                                underlying_value, take_value, &animated},
-                                c->length);
-    return animations != NULL;
+    fl_css_animations_apply(declared, c->sheet, c->seconds,
+                            &(FlCssContext){&style->units, find_variable, style, underlying_value,
+                                            take_value, &animated},
+                            c->length);
+    return declared->len > 0;
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */

@@ -27,23 +27,10 @@ static const char *const names[N_LONGHANDS] = {
 static const char *const initial[N_LONGHANDS] = {"none",   "0s",   "ease",    "0s",      "1",
                                                  "normal", "none", "running", "replace", "auto"};
 
-struct FlCssAnimations {
+/** The animations of one element, from the values of its animation properties. */
+typedef struct FlCssAnimations {
     char **list[N_LONGHANDS]; // NULL: not said
-};
-
-FlCssAnimations *fl_css_animations_new(void)
-{
-    return g_new0(FlCssAnimations, 1);
-}
-
-void fl_css_animations_free(FlCssAnimations *animations)
-{
-    if (!animations)
-        return;
-    for (int k = 0; k < N_LONGHANDS; k++)
-        g_strfreev(animations->list[k]);
-    g_free(animations);
-}
+} FlCssAnimations;
 
 static bool is_time(const char *word)
 {
@@ -97,7 +84,7 @@ static void set_all(FlCssAnimations *animations, const char *value)
     }
 }
 
-void fl_css_animations_set(FlCssAnimations *animations, const char *property, const char *value)
+static void set(FlCssAnimations *animations, const char *property, const char *value)
 {
     if (strcmp(property, "animation") == 0)
         set_all(animations, value);
@@ -283,8 +270,8 @@ static char *sum_of(const char *property, const char *base, char *value)
     return sum;
 }
 
-void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet *sheet,
-                             double seconds, const FlCssContext *context, FlFilmLength *length)
+static void apply(const FlCssAnimations *animations, const FlCssSheet *sheet, double seconds,
+                  const FlCssContext *context, FlFilmLength *length)
 {
     for (int i = 0; animations->list[NAME] && animations->list[NAME][i]; i++) {
         g_autofree char *plain = fl_css_string_or_url(animations->list[NAME][i]);
@@ -313,4 +300,15 @@ void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet
             context->take(context->data, property, adds ? sum_of(property, base, value) : value);
         }
     }
+}
+
+void fl_css_animations_apply(const GArray *declared, const FlCssSheet *sheet, double seconds,
+                             const FlCssContext *context, FlFilmLength *length)
+{
+    FlCssAnimations animations = {0};
+    FL_EACH (const FlCssDeclaration, d, declared)
+        set(&animations, d->name, d->value);
+    apply(&animations, sheet, seconds, context, length);
+    for (int k = 0; k < N_LONGHANDS; k++)
+        g_strfreev(animations.list[k]);
 }

@@ -5,15 +5,6 @@
 #include "svg/css_value.h"
 #include "svg/smil.h"
 
-/** The animations of one element, from the values of its animation properties. */
-typedef struct FlCssAnimations FlCssAnimations;
-
-FlCssAnimations *fl_css_animations_new(void);
-void fl_css_animations_free(FlCssAnimations *animations); // NULL is fine
-
-/** Sets `animation` or one of its longhands; declarations come in the order of the cascade. */
-void fl_css_animations_set(FlCssAnimations *animations, const char *property, const char *value);
-
 /** Gives what a value of a property stands for; NULL: the value of the element without animations.
  * "" without a value. */
 typedef const char *FlCssUnderlying(const void *data, const char *property, const char *value);
@@ -35,9 +26,8 @@ typedef struct FlCssContext {
  * Calls context->take for each property that is animated after so many seconds, those of later
  * animations last. Values may contain calc(); variables in them are put in.
  *
+ * declared: FlCssDeclaration of `animation` and its longhands, in the order of the cascade.
  * length: collects the ends and loops of the animations; may be NULL.
  */
-void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet *sheet,
-                             double seconds, const FlCssContext *context, FlFilmLength *length);
-
-G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlCssAnimations, fl_css_animations_free)
+void fl_css_animations_apply(const GArray *declared, const FlCssSheet *sheet, double seconds,
+                             const FlCssContext *context, FlFilmLength *length);

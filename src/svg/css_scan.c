@@ -55,6 +55,16 @@ bool fl_number_read(const char **text, double *value)
     return true;
 }
 
+int fl_numbers_read(const char *text, double *v, int most)
+{
+    int n = 0;
+    for (const char *s = text + strspn(text, FL_CSS_SPACE ","); *s;
+         s += strspn(s, FL_CSS_SPACE ","))
+        if (n == most || !fl_number_read(&s, &v[n++]))
+            return -1;
+    return n;
+}
+
 /** Skips a string with its quotes. */
 static const char *skip_string(const char *s)
 {

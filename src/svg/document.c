@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/limits.h"
+#include "svg/css_scan.h"
 #include <gio/gio.h>
 #include <glib/gstdio.h>
 #include <libxml/parser.h>
@@ -180,14 +181,9 @@ void fl_set_numbers(xmlNode *node, const char *name, const double *v, int n)
 
 bool fl_view_box(const xmlNode *node, double box[4])
 {
-    const char *s = fl_attribute(node, "viewBox");
+    const char *text = fl_attribute(node, "viewBox");
     double v[4];
-    for (int k = 0; k < 4; k++) {
-        s = s ? s + strspn(s, " \t\r\n\f,") : "";
-        if (!fl_number_read(&s, &v[k]))
-            return false;
-    }
-    if (!(v[2] > 0 && v[3] > 0))
+    if (!text || fl_numbers_read(text, v, 4) != 4 || !(v[2] > 0 && v[3] > 0))
         return false;
     memcpy(box, v, sizeof v);
     return true;

@@ -214,10 +214,8 @@ static void apply_transform(const FlAnimation *a, double seconds)
     static const char *const neutral[2][3] = {{"0", "0 0", "0 0 0"}, {"1", "1 1", "1 1"}};
     const bool scale = type && strcmp(type, "scale") == 0;
     g_autofree char *to = fl_trimmed_attribute(a->node, "to");
-    int n = 0; // numbers in `to`
-    double ignored;
-    for (const char *s = to; s && fl_number_read(&s, &ignored); s += strspn(s, FL_CSS_SPACE ","))
-        n++;
+    double ignored[3];
+    const int n = to ? fl_numbers_read(to, ignored, 3) : 0;
     bool adds;
     g_autofree char *value = value_at(a, neutral[scale][CLAMP(n, 1, 3) - 1], seconds, &adds);
     const char *own = fl_attribute(a->target, a->attribute);
@@ -229,43 +227,22 @@ static void apply_transform(const FlAnimation *a, double seconds)
     fl_set_attribute(a->target, a->attribute, all);
 }
 
-/** The path that an animateMotion names, in itself or by an <mpath>; NULL: none. */
-static FlOutlines *named_path(const FlTimeline *timeline, const FlAnimation *a, bool *named)
-{
-    const FlCssUnits units = {300, 150, 16, 16, 300, 150};
-    const xmlNode *mpath = NULL;
-    FL_EACH_ELEMENT (child, a->node)
-        mpath = !mpath && fl_is(child, "mpath") ? child : mpath;
-    const xmlNode *shown = mpath ? fl_timeline_referred(timeline, mpath, NULL) : NULL;
-    g_autofree char *path = fl_trimmed_attribute(a->node, "path");
-    *named = mpath || path;
-    return shown            ? fl_css_outlines(shown, &units)
-           : !mpath && path ? fl_css_outlines_of_path(path)
-                            : NULL;
-}
-
-/** The nodes of a path as values, "x,y". */
-static char **nodes_of(const FlOutlines *path)
-{
-    char **nodes = g_new0(char *, path->n_cubics + 2);
-    for (int i = 0; i <= path->n_cubics && path->n_cubics > 0; i++) {
-        const FlPoint p = path->cubic[MAX(i - 1, 0)].p[i > 0 ? 3 : 0];
-        g_autofree char *x = fl_css_number_text(p.x), *y = fl_css_number_text(p.y);
-        nodes[i] = g_strconcat(x, ",", y, NULL);
-    }
-    return nodes;
-}
-
-/** The path of animateMotion: the one that it names, or lines between its values, *corners, to be
- * freed; discrete, they are the nodes of the path. NULL: none. */
+/** The path of animateMotion: its own, that of an <mpath>, or lines between its values, *corners,
+ * to be freed; NULL: none. */
 static FlOutlines *motion_path(const FlTimeline *timeline, const FlAnimation *a, char ***corners)
 {
-    bool adds = true, named;
-    g_autoptr(FlOutlines) path = named_path(timeline, a, &named);
-    const bool jumps = says(a, "calcMode", "discrete") && !fl_attribute(a->node, "keyPoints");
-    if (named && (!path || !jumps))
-        return g_steal_pointer(&path);
-    *corners = path ? nodes_of(path) : values_of(a, "0,0", &adds);
+    FL_EACH_ELEMENT (child, a->node) {
+        if (!fl_is(child, "mpath"))
+            continue;
+        const xmlNode *path = fl_timeline_referred(timeline, child, NULL);
+        const FlCssUnits units = {300, 150, 16, 16, 300, 150};
+        return path ? fl_css_outlines(path, &units) : NULL;
+    }
+    g_autofree char *path = fl_trimmed_attribute(a->node, "path");
+    if (path)
+        return fl_css_outlines_of_path(path);
+    bool adds = true;
+    *corners = values_of(a, "0,0", &adds);
     g_autofree char *joined = g_strjoinv(" L", *corners), *d = g_strconcat("M", joined, NULL);
     return *joined ? fl_css_outlines_of_path(d) : NULL;
 }
@@ -308,7 +285,14 @@ static void apply_motion(const FlTimeline *timeline, const FlAnimation *a, doubl
         return;
     const double share = key_point(a, corners, fl_share_of_round(a, interval, seconds, &rounds));
     const double whole = fl_css_walk_along(path, INFINITY, &end, &direction);
-    fl_css_walk_along(path, share * whole, &at, &direction);
+    const bool jumps = // from node to node
+        !corners && says(a, "calcMode", "discrete") && !fl_attribute(a->node, "keyPoints");
+    FlOutlines walked = *path;
+    walked.n_cubics = MIN((int)(share * (path->n_cubics + 1) + 1e-9), path->n_cubics);
+    if (jumps && walked.n_cubics > 0)
+        fl_css_walk_along(&walked, INFINITY, &at, &direction);
+    else
+        fl_css_walk_along(path, jumps ? 0 : share * whole, &at, &direction);
     if (says(a, "accumulate", "sum"))
         at.x += rounds * end.x, at.y += rounds * end.y;
     const bool reverse = says(a, "rotate", "auto-reverse"); // browsers take no angle

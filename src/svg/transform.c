@@ -149,23 +149,14 @@ static int read_arguments(const char *name, const char *text, const FlCssUnits *
     return n <= MOST_ARGUMENTS ? n : -1;
 }
 
-/** Likewise those of a function of the attribute, which are plain numbers. */
-static int read_numbers(const char *text, double *v)
-{
-    int n = 0;
-    for (const char *s = fl_css_space(text); *s; s += strspn(s, FL_CSS_SPACE ","))
-        if (n == MOST_ARGUMENTS || !fl_number_read(&s, &v[n++]))
-            return -1;
-    return n;
-}
-
 /** Reads one function and its matrix; units: NULL for those of the attribute. */
 static bool read_function(const char *name, const char *arguments, const FlCssUnits *units,
                           Space *space)
 {
     double v[MOST_ARGUMENTS];
     g_autofree char *lower = g_ascii_strdown(name, -1);
-    const int n = units ? read_arguments(lower, arguments, units, v) : read_numbers(arguments, v);
+    const int n = units ? read_arguments(lower, arguments, units, v)
+                        : fl_numbers_read(arguments, v, MOST_ARGUMENTS);
     return n >= 0 &&
            (units || fl_css_has_word("matrix translate scale rotate skewx skewy", lower)) &&
            map_of(lower, v, n, space);

@@ -28,15 +28,12 @@ static int count_elements(const xmlNode *node)
 static void turn_blur(xmlNode *step, const FlAffine *m)
 {
     const char *text = fl_attribute(step, "stdDeviation");
-    const char *s = text ? text : fl_is(step, "feDropShadow") ? "2" : "0";
-    double across, down;
-    if (!fl_number_read(&s, &across))
-        return;
-    s += strspn(s, FL_CSS_SPACE ",");
-    if (fl_number_read(&s, &down) && down != across)
+    double v[2];
+    const int n = fl_numbers_read(text ? text : fl_is(step, "feDropShadow") ? "2" : "0", v, 2);
+    if (n < 1 || (n == 2 && v[1] != v[0]))
         return; // librsvg has no blur across the axes
     const double determinant = m->xx * m->yy - m->xy * m->yx;
-    const double px = across * sqrt(fabs(determinant));
+    const double px = v[0] * sqrt(fabs(determinant));
     for (int k = 0; k < 4; k++) { // the sign of a deviation does not count after the map
         const double x = k & 1 ? -1 : 1, y = k & 2 ? -1 : 1;
         const double a = (m->yy * x - m->xy * y) / determinant;
