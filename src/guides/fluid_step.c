@@ -46,7 +46,7 @@ FlFluidDials fl_fluid_dials(const FlRegionSettings *settings)
 {
     static const FlFluidDials kinds[] = {
         [FL_FLUID_NONE] = {.memory = 0},
-        [FL_FLUID_PLAIN] = {.memory = 1, .emit = 1, .swirl = 1},
+        [FL_FLUID_PLAIN] = {.memory = 1, .emit = 1, .swirl = 1, .stiff = .03f},
         [FL_FLUID_SMOKE] = {.memory = 1, .emit = 1, .swirl = 1, .buoyancy = 2},
         [FL_FLUID_WATER] = {.memory = .95f, .swirl = .5f},
         [FL_FLUID_FIRE] =
