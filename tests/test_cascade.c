@@ -525,6 +525,7 @@ static void gaps_of_librsvg_are_filled(void)
                     "<use href='#s'/><symbol id='w' width='7' height='5'/><use href='#w'/>"
                     "<g style='filter:invert(1)'/><text style='white-space:pre'>a</text>"
                     "<text> End<tspan>\n more <tspan>x</tspan></tspan> </text>"
+                    "<text>\n  <tspan>p</tspan>\n  <tspan>q</tspan>\n  </text>"
                     "<path xmlns='' id='n'/>"
                     "<image href='data:image/svg+xml,%3csvg xmlns=\"http://www.w3.org/2000/svg\" "
                     "width=\"2\" height=\"1\"/%3e'/>");
@@ -534,6 +535,7 @@ static void gaps_of_librsvg_are_filled(void)
     g_assert_nonnull(strstr(text, "color-interpolation-filters=\"sRGB\""));
     g_assert_nonnull(strstr(text, "xml:space=\"preserve\""));
     g_assert_nonnull(strstr(text, ">End<tspan> more <tspan>x</tspan></tspan></text>"));
+    g_assert_nonnull(strstr(text, "<tspan>p</tspan> <tspan>q</tspan></text>"));
     g_assert_nonnull(strstr(text, "<desc xmlns=\"\" id=\"n\"/>"));
     g_assert_nonnull(strstr(text, "<feMerge dx=\"1\" result=\"r\""));
     g_assert_nonnull(strstr(text, "<feMergeNode in=\"fl-before-0\"/>"));

@@ -376,14 +376,17 @@ static xmlNode *collapse_space(xmlNode *node, char *last)
             xmlNode *inner = collapse_space(child, last);
             found = inner ? inner : found;
         } else if (child->type == XML_TEXT_NODE || child->type == XML_CDATA_SECTION_NODE) {
-            char *to = (char *)child->content;
-            for (const char *s = to; *s; s++) {
+            g_autofree char *read = g_strdup((const char *)child->content);
+            char *to = read;
+            for (const char *s = read; *s; s++) {
                 const char letter = strchr(FL_CSS_SPACE, *s) ? ' ' : *s;
                 if (letter != ' ' || (*last && *last != ' '))
                     *to++ = *last = letter;
             }
             *to = '\0';
-            found = *child->content ? child : found;
+            // nodes share what the parser gave them
+            xmlNodeSetContent(child, (const xmlChar *)read);
+            found = *read ? child : found;
         }
     }
     return found;
