@@ -178,6 +178,9 @@ mkdir 'held 5%' && "$program" whole -s 01 --detail draft -f 1 -q -o 'held 5%' >o
     "$program" whole -s 01 --detail draft -q -o 'held 5%' --format gif --no-frames >>out 2>>err &&
     [ -s 'held 5%/w_0001.png' ] && [ -s held/folder/w_0001.png ] && [ -s 'held 5%/w.gif' ]
 result $? 'a folder as output is filled'
+"$program" whole -s 01 --detail draft -f 1 -q -o held/n.png --layers held/folder --paint 'held/{name}%%{region}%d.png' >out 2>err &&
+    [ -s held/folder/w_paper_sheet_0001.png ] && compgen -G 'held/w%*1.png' >out
+result $? 'so is one of layers, and {name} in a pattern of layers or paint is the name of the film'
 refuses 'a sheet that is no PNG is refused' 2 'styles.jpg: sheets are PNG files; *' --list-styles -o styles.jpg
 refuses 'a sheet that exists stays' 1 'styles.png: already exists*' --list-styles -o styles.png
 "$program" whole -s 01 --detail draft -o 'a/w_%d.png' --layers 'a/{region}_%d.png' >out 2>err &&

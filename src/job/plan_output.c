@@ -154,11 +154,24 @@ static bool choose_part(FlPlan *plan, GError **error)
     return of_film ? plan->out.movie != NULL : !plan->out.format->film;
 }
 
+/* The pattern with the film's name in place of {name}; kept for good. May be NULL. */
+static const char *with_name(const char *pattern, const FlSequence *sequence)
+{
+    g_autofree char *named =
+        pattern ? fl_output_of_film(pattern, "_{region}_%04d.png", sequence->name, true) : NULL;
+    return g_intern_string(named);
+}
+
 bool fl_plan_find_output(FlPlan *plan, GError **error)
 {
-    const FlRenderOptions *o = &plan->options;
+    FlRenderOptions *o = &plan->options;
     g_autoptr(FlSequence) sequence = fl_sequence_from_options(o, error);
-    if (!sequence || !check_numbered(o->layers, sequence, error) ||
+    if (!sequence)
+        return false;
+    plan->out.layers = o->layers = with_name(o->layers, sequence);
+    if (!plan->painted_by_ebsynth)
+        plan->out.paint = o->paint = with_name(o->paint, sequence);
+    if (!check_numbered(o->layers, sequence, error) ||
         !(plan->out.parts_only ? name_parts : name_output)(plan, sequence, error) ||
         !parse_part(plan, error) || (o->part && !choose_part(plan, error)))
         return false;
