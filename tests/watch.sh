@@ -179,4 +179,14 @@ follows && errors 0
 result $? 'a change while it paints starts again'
 ends TERM 0
 
+none='a watch without inotify is refused in one line'
+if unshare -r bash -c 'echo 0 >/proc/sys/user/max_inotify_instances' 2>/dev/null; then
+    unshare -r bash -c 'echo 0 >/proc/sys/user/max_inotify_instances && timeout 60 "$@"' bash \
+        "$program" film -s "$style" -o 'none/w_%d.png' --watch 2>err
+    [ $? = 1 ] && says 'there is no inotify' && [ ! -e none ]
+    result $? "$none"
+else
+    skip "$none" 'no name spaces'
+fi
+
 echo "1..$n"

@@ -154,6 +154,17 @@ void fl_file_watch_add_all(FlFileWatch *watch, const FlFileWatch *old)
         fl_file_watch_add(watch, file);
 }
 
+bool fl_file_watch_works(GError **error)
+{
+    g_autoptr(GFile) any = g_file_new_for_path("/");
+    g_autoptr(GFileMonitor) monitor = g_file_monitor_directory(any, 0, NULL, NULL);
+    if (!monitor)
+        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
+                    "changed files cannot be noticed here: there is no inotify, or other programs "
+                    "use all of it (see fs.inotify.max_user_instances)");
+    return monitor;
+}
+
 FlFileWatch *fl_file_watch_new(const char *const *inputs, const char *config)
 {
     FlFileWatch *watch = g_new0(FlFileWatch, 1);

@@ -6,6 +6,9 @@
 
 typedef struct FlFileWatch FlFileWatch;
 
+/** Returns: false with an error if the system tells no changes of files. */
+bool fl_file_watch_works(GError **error);
+
 /**
  * Watches the config and the folders of drawings from now on, in which frames may appear. All else
  * that a render reads is told by its options' call `reads`, for fl_file_watch_add(). To be used by

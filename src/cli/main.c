@@ -274,6 +274,8 @@ static int watch(FlArgs *args, Reporter *reporter)
         return fail(args, error);
     int status = -1;
     (void)fl_start_workers(); // before the watch starts a thread; a reading without them warns
+    if (!fl_file_watch_works(&error))
+        return fail(args, error);
     g_autoptr(FlFileWatch) before = NULL;
     while (status < 0) {
         FlFileWatch *files = fl_file_watch_new(args->render.inputs, args->render.config);

@@ -566,6 +566,9 @@ static void run(Live *live)
     printf("http://%s%s\n", live->hosts[0], live->root);
     fflush(stdout);
     paint_anew(live, false);
+    g_autoptr(GError) blind = NULL;
+    if (!fl_file_watch_works(&blind))
+        tell(live, "warning", blind->message);
     g_main_loop_run(live->loop);
     g_source_remove(tick);
 }
