@@ -82,9 +82,11 @@ tell("a frame that was never painted shows the last one that was", browser.ask("
     frames.forEach((f, k) => { if (k !== 4) Object.assign(f, { generation: -1, images: {} }); });
     state.playing = true;
     const stands = standIn(2);
+    Object.assign(frames[4], { generation: -1 });
+    const old = standIn(2);
     state.playing = playing;
     frames.forEach((f, k) => Object.assign(f, was[k]));
-    return stands; })()""") == 4)
+    return stands === 4 && old === 4; })()"""))
 browser.ask("play(false), show(3)")
 tell("each style has a picture", until("live.samples.every((s) => !s.canvas.classList.contains('old'))"))
 before = pixels(3)
