@@ -574,8 +574,7 @@ static double change_on(const char *figure, const char *fill, int x, int width, 
 }
 
 /* What spans the page and rests is ground, which stains darken; dark ground they thin, and white
- * paint as well. A face,
- * water that moves, and hills that hide what moves, are none. */
+ * paint as well. A face, water that moves, and hills that hide what moves, are none. */
 static void test_ground(void)
 {
     const double pale = change_on("#d33", "#cdc", -9, 114, 0, 0, 2),
@@ -629,6 +628,38 @@ static void test_pan(void)
                    blue[1][0], blue[1][1], blue[0][0]);
     g_assert_cmpfloat(blue[1][0], <, blue[0][0] - 4);
     g_assert_cmpfloat(fabs(blue[1][1] - blue[0][1]), <, 0.5);
+}
+
+/* Blue of a sky at x, which a square has passed, by `way` px a frame, behind ground that moves to
+ * the side or up or before it. */
+static double sky_at(int x, int way, int pans, int rises, bool behind)
+{
+    g_auto(GStrv) frames = g_new0(char *, 9);
+    for (int f = 1; f <= 8; f++) {
+        g_autofree char *square =
+            g_strdup_printf("<path d='M%d 10h20v20h-20z' fill='#a53'/>", 10 + way * f);
+        frames[f - 1] = g_strdup_printf("<path d='M-9 -9h118v118h-118z' fill='#def'/>%s"
+                                        "<path d='M%d %dh300v90h-300z' fill='#9b6'/>%s",
+                                        behind ? square : "", pans * f - 90, 55 - rises * f,
+                                        behind ? "" : square);
+    }
+    FlPicture *picture = last_of(frames, 96, "1", NULL);
+    const double blue = mean_at(picture, x, 20, 2);
+    fl_picture_free(picture);
+    return blue;
+}
+
+/* Water that rises is no camera; nor does what rests behind a meadow trail as this moves. */
+static void test_tide(void)
+{
+    const double before = sky_at(45, 6, 0, 0, false), tide = sky_at(45, 6, 0, 2, false);
+    const double moon = sky_at(36, 0, 0, 0, true), passed = sky_at(36, 0, 6, 0, true);
+    g_test_message("blue of the sky behind a bird %.1f, over a tide %.1f, of none %.1f; beside a "
+                   "moon %.1f, as a meadow moves %.1f",
+                   before, tide, sky_at(45, 0, 0, 0, false), moon, passed);
+    g_assert_cmpfloat(before, <, sky_at(45, 0, 0, 0, false) - 4);
+    g_assert_cmpfloat(fabs(tide - before), <, 0.5);
+    g_assert_cmpfloat(fabs(passed - moon), <, 0.5);
 }
 
 enum { WIDE = 360 }; // px, of a page whose cells have 2
@@ -915,6 +946,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/marks-and-grain-move-with-the-paper", test_moved);
     g_test_add_func("/wet/a-stain-turns-with-the-ground", test_camera);
     g_test_add_func("/wet/what-a-camera-passes-leaves-nothing", test_pan);
+    g_test_add_func("/wet/a-tide-and-a-moon-leave-the-paper-as-it-is", test_tide);
     g_test_add_func("/wet/ground-is-stained-and-a-face-is-not", test_ground);
     g_test_add_func("/wet/a-stain-stays-in-place-between-cells", test_part_of_a_cell);
     g_test_add_func("/wet/the-paper-turns-with-the-camera", test_turned);

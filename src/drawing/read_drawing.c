@@ -296,13 +296,18 @@ static void add_part(Place *place, const FlSurveyPart *part)
 typedef struct Course {
     Place first, all; // in the first frame that has it; over all frames
     bool spans;       // in every frame from its first on, from side to side of the page
+    bool wide;        // so from left to right
     bool rests;       // where it was, as large as it was
 } Course;
 
+static bool is_wide(const float box[4], const FlPageSize *page)
+{
+    return box[0] < 1 && box[2] > (float)page->width - 1;
+}
+
 static bool spans(const float box[4], const FlPageSize *page)
 {
-    return (box[0] < 1 && box[2] > (float)page->width - 1) ||
-           (box[1] < 1 && box[3] > (float)page->height - 1);
+    return is_wide(box, page) || (box[1] < 1 && box[3] > (float)page->height - 1);
 }
 
 static bool is_held(const Place *first, const Place *now)
@@ -318,8 +323,9 @@ static bool is_held(const Place *first, const Place *now)
 static void follow(Course *course, const Place *now, const FlPageSize *page, bool first)
 {
     if (first)
-        *course = (Course){*now, *now, true, true};
+        *course = (Course){*now, *now, true, true, true};
     course->spans = course->spans && spans(now->box, page);
+    course->wide = course->wide && is_wide(now->box, page);
     course->rests = course->rests && is_held(&course->first, now);
     for (int k = 0; k < 2 && now->area_px > 0; k++) {
         course->all.box[k] = MIN(course->all.box[k], now->box[k]);
@@ -370,7 +376,7 @@ static void measure(FlDrawing *drawing, const FlSurvey *survey)
     for (guint r = 0; r < n; r++) {
         FlRegion *region = &g_array_index(drawing->regions, FlRegion, r);
         region->area_px /= MAX(region->n_present, 1);
-        region->spans = courses[r].spans;
+        region->spans = courses[r].wide;
         region->stays = stays(courses, r);
     }
 }

@@ -4,37 +4,38 @@
 #include <math.h>
 
 #define GROUND_SHARE 0.4 // of the page: more is ground
+#define MOVED 0.02       // of the page's width: what goes less far rests
 
-/** The way of a region through the film; against that of another, or -1: against the page. */
+/** How far a region goes to the sides in the film; against another, or -1: against the page. */
 static double way_of(const FlShapes *shapes, int region, int other)
 {
-    double way = 0;
-    for (int f = 1; f < shapes->n_frames; f++) {
-        double step[2] = {0, 0};
-        for (int k = 0; k < (other < 0 ? 1 : 2); k++) {
-            const FlAnchor was = fl_drawing_anchor(shapes->drawing, k ? other : region, f - 1);
-            const FlAnchor now = fl_drawing_anchor(shapes->drawing, k ? other : region, f);
-            const double sign = k ? -1 : 1;
-            step[0] += sign * (double)(now.x - was.x), step[1] += sign * (double)(now.y - was.y);
-        }
-        way += hypot(step[0], step[1]);
+    const FlDrawing *drawing = shapes->drawing;
+    const int with = other < 0 ? region : other;
+    double least = INFINITY, most = -INFINITY;
+    for (int f = MAX(fl_drawing_region(drawing, region)->first_frame,
+                     fl_drawing_region(drawing, with)->first_frame);
+         f < shapes->n_frames; f++) {
+        const double from = other < 0 ? 0 : (double)fl_drawing_anchor(drawing, other, f).x;
+        const double x = (double)fl_drawing_anchor(drawing, region, f).x - from;
+        least = fmin(least, x), most = fmax(most, x);
     }
-    return way;
+    return fmax(most - least, 0);
 }
 
-/** The share of the page that moves along with a region; 0: it rests. Hills behind a meadow move
- * the same way, less far. */
+/** The share of the page that moves to the sides along with a region; 0: it rests, or water rises
+ * and falls. Hills behind a meadow move the same way, less far. */
 static double moves_along(const FlShapes *shapes, int region)
 {
     const double way = way_of(shapes, region, -1);
     double along = 0;
-    for (int r = 0; r < fl_drawing_regions(shapes->drawing) && way > 1; r++)
+    for (int r = 0; r < fl_drawing_regions(shapes->drawing) && way > MOVED * shapes->page_width;
+         r++)
         along += fl_shapes_share_of_page(shapes, r) * fmax(1 - way_of(shapes, r, region) / way, 0);
     return along;
 }
 
-/** How well a region serves as the camera; 0: it is no ground. A ground that moves comes before the
- * sky that rests behind it. */
+/** How well a region serves as the camera; 0: it is no ground. Above 1: it moves, and comes before
+ * the sky that rests behind it. */
 static double rank_of(const FlShapes *shapes, int region)
 {
     const double share = fl_shapes_share_of_page(shapes, region);
@@ -54,6 +55,7 @@ static bool find_camera(FlShapes *shapes, const char *wanted, GError **error)
         if (rank > most)
             shapes->camera = r, most = rank;
     }
+    shapes->n_far = most > 1 ? shapes->camera : 0;
     if (shapes->camera >= 0 || none || found)
         return true;
     return fl_fail(error, FL_ERROR_USAGE,

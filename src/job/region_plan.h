@@ -79,9 +79,11 @@ typedef struct FlShapes {
     FlEdge *edge_limits; // by region
     bool *ground;        // by region: it is the ground on which the others, figures, move
     int camera;          // the region that the paper moves with; -1: the paper stays
-    bool *seen;          // by region: it is not painted, or something of it shows; NULL: not known
-    bool frames_alone;   // paint is used for frames only, so that hidden regions need none: layers,
-                         // which can be moved apart, show them
+    int n_far;         // the first regions, which lie behind that one as it moves: they go another
+                       // way, and leave no marks on it
+    bool *seen;        // by region: it is not painted, or something of it shows; NULL: not known
+    bool frames_alone; // paint is used for frames only, so that hidden regions need none: layers,
+                       // which can be moved apart, show them
     /**
      * The flow into a frame from the one before, 2 * width * height floats, interleaved; values
      * that are not known become `unknown`. Any thread. NULL: flow comes from the masks.

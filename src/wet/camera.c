@@ -67,16 +67,21 @@ bool fl_wet_follow_camera(const FlWet *wet, int before, int frame, FlAffine *cam
 {
     const FlRect page = wet->sheet.page;
     const FlDrawing *drawing = wet->shapes->drawing;
-    if (wet->shapes->camera < 0 || before < 0)
+    const int camera = wet->shapes->camera;
+    if (camera < 0 || before < fl_drawing_region(drawing, camera)->first_frame)
         return true;
-    g_autofree float *motion =
-        fl_alloc_unset(2 * fl_rect_pixels(page), sizeof *motion, "a motion", error);
-    if (!motion || !fl_wet_get_motion(wet, wet->shapes->camera, before, frame, page, motion, error))
+    const size_t n = fl_rect_pixels(page);
+    g_autofree uint8_t *mask = fl_alloc_unset(n, 1, "a mask", error);
+    g_autofree float *motion = fl_alloc_unset(2 * n, sizeof *motion, "a motion", error);
+    if (!mask || !motion || !fl_wet_get_mask(wet, camera, frame, page, mask, error) ||
+        !fl_wet_get_motion(wet, camera, before, frame, page, motion, error))
         return false;
+    for (size_t p = 0; p < n; p++) // beyond the ground it is a guess
+        motion[2 * p] = mask[p] < 128 ? NAN : motion[2 * p];
     if (fit_motion(motion, page, came))
         return true;
-    const FlAnchor now = fl_drawing_anchor(drawing, wet->shapes->camera, frame);
-    const FlAnchor was = fl_drawing_anchor(drawing, wet->shapes->camera, before);
+    const FlAnchor now = fl_drawing_anchor(drawing, camera, frame);
+    const FlAnchor was = fl_drawing_anchor(drawing, camera, before);
     *came = FL_AFFINE_NONE;
     came->x0 = (was.x - now.x) / (float)wet->cell, came->y0 = (was.y - now.y) / (float)wet->cell;
     return true;

@@ -20,7 +20,7 @@ static bool wants_marks(const FlShapes *shapes, const FlRegionPlan *region)
         const FlRegionSettings now = settings_in(shapes, region, f);
         wants = now.front * style->width > 0 || now.stain * style->stain > 0;
     }
-    return wants && !fl_shapes_hide(shapes, region->region);
+    return wants && region->region >= shapes->n_far && !fl_shapes_hide(shapes, region->region);
 }
 
 bool fl_wet_wanted(const FlShapes *shapes)
