@@ -509,6 +509,9 @@ static void gaps_of_librsvg_are_filled(void)
     assert_value("<svg id='a' preserveAspectRatio='xMidYMax slice'/>", "preserveAspectRatio",
                  "xMidYMax slice");
     assert_value("<svg id='a' viewBox='0 0 10'/>", "viewBox", "");
+    assert_value("<svg id='a' viewBox='0 0,,10 10'/>", "viewBox", "");
+    assert_value("<svg id='a' viewBox='0 0 10 10,'/>", "viewBox", "");
+    assert_value("<svg viewBox='0 0 10 0'><path id='a'/></svg>", "display", "none");
     g_autoptr(FlSvg) svg =
         open_svg_of("<filter><feFlood/><feDropShadow dx='1' result='r'/></filter>"
                     "<filter><feImage href='#s' x='7' y='5'/></filter>"

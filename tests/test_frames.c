@@ -378,6 +378,10 @@ static void silent_traps_give_warnings(void)
         {"<path id=\"r\" d=\"M0 0L10 10 Lx 5\"/>", "is broken at “x 5” (character 13)"},
         {"<rect id=\"r\" " BOX "><animate attributeName=\"x\"/></rect>", "is not played"},
         {"<foreignObject id=\"r\"/>", "HTML"},
+        {"<switch><foreignObject id=\"r\"/><rect " BOX "/></switch>", "draws its next child"},
+        {"<pattern id=\"p\" width=\".5\" height=\".5\"><rect " BOX "/></pattern>"
+         "<text id=\"r\" y=\"9\" fill=\"url(#p)\">a</text>",
+         "in the box of the ink"},
     };
     g_autoptr(Scratch) folder = scratch_make();
     for (size_t i = 0; i < G_N_ELEMENTS(traps); i++) {

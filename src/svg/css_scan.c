@@ -58,10 +58,14 @@ bool fl_number_read(const char **text, double *value)
 int fl_numbers_read(const char *text, double *v, int most)
 {
     int n = 0;
-    for (const char *s = text + strspn(text, FL_CSS_SPACE ","); *s;
-         s += strspn(s, FL_CSS_SPACE ","))
+    bool comma = false;
+    for (const char *s = text + strspn(text, FL_CSS_SPACE); *s || comma;) {
         if (n == most || !fl_number_read(&s, &v[n++]))
             return -1;
+        s += strspn(s, FL_CSS_SPACE);
+        comma = *s == ',';
+        s += comma ? 1 + strspn(s + 1, FL_CSS_SPACE) : 0;
+    }
     return n;
 }
 

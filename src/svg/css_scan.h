@@ -30,7 +30,8 @@ const char *fl_css_find_past(const char *s, const char *stops);
  */
 bool fl_number_read(const char **s, double *value);
 
-/** Reads a list of plain numbers. Returns: how many; -1 if there are more, or other things. */
+/** Reads a list of plain numbers, with a comma between two at most. Returns: how many; -1 if there
+ * are more, or other things. */
 int fl_numbers_read(const char *text, double *v, int most);
 
 /** The length in bytes of the identifier at the start of `s`, escapes included; 0 if it has no

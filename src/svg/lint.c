@@ -144,7 +144,7 @@ static void check_foreign(const Lint *lint, xmlNode *node)
     if (fl_is(node->parent, "switch")) {
         if (fl_is_eligible(node) || fl_attribute(node, "requiredFeatures"))
             warn(lint, node,
-                 "the HTML in <foreignObject> is left out: what <switch> has besides is drawn");
+                 "the HTML in <foreignObject> is left out: <switch> draws its next child");
         return;
     }
     const xmlNode *box = xmlFirstElementChild(node);

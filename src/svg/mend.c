@@ -436,13 +436,19 @@ static void mend_words(xmlNode *node)
     }
     const char *turn = fl_is(node, "marker") ? fl_attribute(node, "orient") : NULL;
     const char *aspect = fl_attribute(node, "preserveAspectRatio");
+    const char *view = fl_attribute(node, "viewBox");
     double degrees, box[4];
     if (turn && fl_css_number(turn, &(FlCssUnits){0}, 360, &degrees))
         fl_set_numbers(node, "orient", &degrees, 1); // librsvg lacks turns
     if (aspect && !is_aspect(aspect)) // librsvg would hide the element, or know the word "defer"
         fl_set_attribute(node, "preserveAspectRatio", NULL);
-    if (fl_attribute(node, "viewBox") && !fl_view_box(node, box))
+    if (view && (fl_numbers_read(view, box, 4) != 4 || box[2] < 0 || box[3] < 0))
         fl_set_attribute(node, "viewBox", NULL);
+    else if (view && (box[2] == 0 || box[3] == 0)) { // nothing of it shows
+        fl_set_attribute(node, "viewBox", NULL);
+        FL_EACH_ELEMENT (child, node)
+            fl_declare(child, "display:none");
+    }
     if (fl_is(node, "mask") && fl_is_set(node, "mask")) // which no browser applies
         fl_declare(node, "mask:none");
     g_autofree char *display = fl_property(node, "display");
