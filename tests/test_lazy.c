@@ -239,8 +239,8 @@ static void draw_line(Film *film, double half_width, double y)
     }
 }
 
-/* What rests keeps its picture, limits and all. */
-static void what_is_held_keeps_its_limits(void)
+/* A resting region keeps its picture and its limits. */
+static void a_held_frame_keeps_its_limits(void)
 {
     g_auto(Film) film;
     film_init(&film, cut_out(true), "lazyfluids-steady", "1");
@@ -690,7 +690,7 @@ int main(int argc, char **argv)
     g_test_add_func("/lazy/fluid-ends-without-steps", fluid_ends_without_steps);
     g_test_add_func("/lazy/a-limit-that-moves-slowly-does-not-pop",
                     a_limit_that_moves_slowly_does_not_pop);
-    g_test_add_func("/lazy/what-is-held-keeps-its-limits", what_is_held_keeps_its_limits);
+    g_test_add_func("/lazy/a-held-frame-keeps-its-limits", a_held_frame_keeps_its_limits);
     g_test_add_func("/lazy/a-ribbon-has-no-grey-rim", a_ribbon_has_no_grey_rim);
     g_test_add_func("/lazy/a-ribbon-frays-less-than-a-body", a_ribbon_frays_less_than_a_body);
     g_test_add_func("/lazy/a-trimmed-cut-out-paints-nothing-far-outside",

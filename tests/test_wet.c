@@ -552,8 +552,8 @@ static double blue_at(const FlPicture *picture, int x, int y)
     return mean_at(picture, x, y, 2) - mean_at(picture, x, y, 0);
 }
 
-/* By how much a shape that has left changes a channel of what it was seen on, from x to x + width,
- * which comes up by `rocks` px in every other frame; below it something sinks. */
+/* The change of a channel of the ground that a shape has left, from x to x + width; the ground comes
+ * up by `rocks` px in every other frame, and below it something sinks. */
 static double change_on(const char *figure, const char *fill, int x, int width, int rocks,
                         int sinks, int channel)
 {
@@ -573,8 +573,8 @@ static double change_on(const char *figure, const char *fill, int x, int width, 
     return mean[1] - mean[0];
 }
 
-/* What spans the page and rests is ground, which stains darken; dark ground they thin, and white
- * paint as well. A face, water that moves, and hills that hide what moves, are none. */
+/* A resting region that spans the page is ground, which stains darken; they thin dark ground, those
+ * of white paint as well. No ground are a face, water that moves, and hills before a mover. */
 static void test_ground(void)
 {
     const double pale = change_on("#d33", "#cdc", -9, 114, 0, 0, 2),
@@ -649,7 +649,7 @@ static double sky_at(int x, int way, int pans, int rises, bool behind)
     return blue;
 }
 
-/* Water that rises is no camera; nor does what rests behind a meadow trail as this moves. */
+/* Water that rises is no camera; a resting moon leaves no trail as a meadow moves before it. */
 static void test_tide(void)
 {
     const double before = sky_at(45, 6, 0, 0, false), tide = sky_at(45, 6, 0, 2, false);
@@ -945,7 +945,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/marks-fade-until-none-is-left", test_dries);
     g_test_add_func("/wet/marks-and-grain-move-with-the-paper", test_moved);
     g_test_add_func("/wet/a-stain-turns-with-the-ground", test_camera);
-    g_test_add_func("/wet/what-a-camera-passes-leaves-nothing", test_pan);
+    g_test_add_func("/wet/houses-of-a-panned-meadow-leave-nothing", test_pan);
     g_test_add_func("/wet/a-tide-and-a-moon-leave-the-paper-as-it-is", test_tide);
     g_test_add_func("/wet/ground-is-stained-and-a-face-is-not", test_ground);
     g_test_add_func("/wet/a-stain-stays-in-place-between-cells", test_part_of_a_cell);

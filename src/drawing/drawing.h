@@ -42,7 +42,7 @@ typedef struct FlRegion {
     int n_present;    // frames in which it is drawn
     int first_frame;  // index of the first of them
     double area_px;   // mean area over those frames
-    bool spans;       // the page from left to right, from its first frame on
+    bool wide;        // spans the page from left to right, from its first frame on
     bool stays;       // spans the page from its first frame on, rests, and nothing moves below it
     int n_leaves;     // most leaves it had in a frame
     bool paintable;   // false: drawn unpainted over the paint (strokes, shading overlays)

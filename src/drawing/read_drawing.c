@@ -376,7 +376,7 @@ static void measure(FlDrawing *drawing, const FlSurvey *survey)
     for (guint r = 0; r < n; r++) {
         FlRegion *region = &g_array_index(drawing->regions, FlRegion, r);
         region->area_px /= MAX(region->n_present, 1);
-        region->spans = courses[r].wide;
+        region->wide = courses[r].wide;
         region->stays = stays(courses, r);
     }
 }

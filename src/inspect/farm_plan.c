@@ -449,11 +449,10 @@ static char *print_openjd(const Farm *farm, GError **error)
 static char *(*const printers[])(const Farm *, GError **) = {
     [FL_FARM_SLURM] = print_slurm, [FL_FARM_OPENJD] = print_openjd, [FL_FARM_JSON] = print_json};
 
-/* A pattern for the files between tasks and merge: that of the options, or beside the usual frames.
- */
-static char *paint_pattern(const FlPlan *plan, bool given)
+/* A pattern for the files between tasks and merge: of the options, or beside the usual frames. */
+static char *paint_pattern(const FlPlan *plan)
 {
-    if (given)
+    if (plan->options.paint)
         return g_strdup(plan->out.paint);
     g_autoptr(GString) name = g_string_new(fl_drawing_name(plan->shapes.drawing));
     g_string_replace(name, "%", "%%", 0);
@@ -484,7 +483,7 @@ char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *cons
     Farm all = {.plan = plan,
                 .shot = fl_drawing_name(plan->shapes.drawing),
                 .folder = g_get_current_dir(),
-                .paint = paint_pattern(plan, options->paint != NULL),
+                .paint = paint_pattern(plan),
                 .command = command,
                 .n_parts = count_parts(plan),
                 .tasks = g_array_new(FALSE, FALSE, sizeof(Task))};

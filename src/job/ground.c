@@ -39,8 +39,8 @@ static double moves_along(const FlShapes *shapes, int region)
 static double rank_of(const FlShapes *shapes, int region)
 {
     const double share = fl_shapes_share_of_page(shapes, region);
-    const bool spans = fl_drawing_region(shapes->drawing, region)->spans;
-    const double along = spans ? moves_along(shapes, region) : 0;
+    const bool wide = fl_drawing_region(shapes->drawing, region)->wide;
+    const double along = wide ? moves_along(shapes, region) : 0;
     return along > GROUND_SHARE ? 1 + along : share > GROUND_SHARE ? share : 0;
 }
 

@@ -364,9 +364,8 @@ static inline void shine_through(const FlWetSheet *on, Batch *restrict batch)
 
 FL_FOR_EACH_CPU(find_light, shine_through, (const FlWetSheet *sheet, Batch *batch), (sheet, batch))
 
-/** The light that marks let through, as straight RGBA over the paper. Where it is nearly all of it
- * they have the paper's colour, and so much body that they are pale on a dark ground. Returns: true
- * if any is missing. */
+/** The light that marks let through, as straight RGBA over the paper. Pale marks have the paper's
+ * colour and a body, which lightens a dark ground. Returns: true if any light is missing. */
 static bool write_px(const float through[3], float cover, const uint8_t paper[3], uint8_t *rgba)
 {
     const float least = MIN(MIN(through[0], through[1]), through[2]);
