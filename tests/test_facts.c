@@ -1,5 +1,6 @@
 /* A change of anything that a render is made from makes it start anew. */
 #include "base/schedule.h"
+#include "io/png.h"
 #include "io/provenance.h"
 #include "job/outputs.h"
 #include "job/plan.h"
@@ -11,10 +12,12 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A film of four frames that links to, and is painted with, a file of each kind. */
+/* A film of four frames that links to, and is painted with, a file of each kind; and a simple one
+ * of the same regions. */
 typedef struct Film {
     Scratch *folder;
-    char *inputs, *output, *cache, *style, *ink, *flow, *background, *paper, *config, *state;
+    char *inputs, *simple, *output, *cache, *style, *ink, *flow, *background, *paper, *config,
+        *state;
 } Film;
 
 static void copy_file(const char *from, const char *to)
@@ -37,6 +40,18 @@ static void copy_folder(const char *from, const char *to)
         else
             copy_file(source, target);
     }
+}
+
+/* A part of a picture of 384 x 384 px, which is read sooner. */
+static void crop_picture(const char *path)
+{
+    enum { SIDE = 96 };
+    g_autoptr(FlPicture) whole = fl_picture_read_png(path, NULL);
+    g_autofree uint8_t *part = g_malloc(4 * SIDE * SIDE);
+    g_assert_true(whole && whole->width == 4 * SIDE && whole->height == 4 * SIDE);
+    for (int y = 0; y < SIDE; y++)
+        memcpy(part + 4 * SIDE * y, whole->rgba + 4 * (4 * SIDE * (y + SIDE) + SIDE), 4 * SIDE);
+    g_assert_true(fl_png_write(path, part, SIDE, SIDE, 4, NULL));
 }
 
 static void remove_folder(const char *path)
@@ -71,20 +86,41 @@ static void make_fonts(void)
     }
 }
 
+/* A small style that moves ink. */
+static void make_ink(const char *large)
+{
+    static const char *const pictures[] = {"transport.png", "frames/0001.png", "masks/0001.png"};
+    g_autofree char *ini = g_build_filename(film.ink, "style.ini", NULL);
+    copy_folder(large, film.ink);
+    g_autofree char *text = NULL;
+    g_assert_true(g_file_get_contents(ini, &text, NULL, NULL));
+    char *size = strstr(text, "size = 384");
+    memcpy(size, "size = 96 ", 10);
+    scratch_put(ini, text, strlen(text));
+    for (size_t k = 0; k < G_N_ELEMENTS(pictures); k++) {
+        g_autofree char *picture = g_build_filename(film.ink, pictures[k], NULL);
+        crop_picture(picture);
+    }
+}
+
 static void film_make(void)
 {
     const char *fixtures = g_getenv("FLUIDY_FIXTURES");
     film.folder = scratch_make();
-    char **const paths[] = {&film.inputs, &film.output, &film.cache,      &film.style,
+    char **const paths[] = {&film.inputs, &film.simple, &film.output,     &film.cache, &film.style,
                             &film.ink,    &film.flow,   &film.background, &film.paper};
-    static const char *const names[] = {"w_%d.svg", "out_%d.png", "cache",    "style",
-                                        "ink",      "f_%d.flo",   "b_%d.png", "paper.png"};
+    static const char *const names[] = {"w_%d.svg", "s_%d.svg", "out_%d.png", "cache",    "style",
+                                        "ink",      "f_%d.flo", "b_%d.png",   "paper.png"};
     for (size_t k = 0; k < G_N_ELEMENTS(names); k++)
         *paths[k] = g_build_filename(film.folder, names[k], NULL);
     g_autofree char *small = g_build_filename(fixtures, "style-small", NULL);
     g_autofree char *transport = g_build_filename(fixtures, "styles", "11", NULL);
     copy_folder(small, film.style);
-    copy_folder(transport, film.ink);
+    for (int f = 3; f <= 6; f++) { // two frames are read sooner
+        g_autofree char *frame = g_strdup_printf("%s/frames/%04d.png", film.style, f);
+        g_assert_cmpint(g_unlink(frame), ==, 0);
+    }
+    make_ink(transport);
     g_free(scratch_write(film.folder, "look.css", "circle { fill: #aa3311 }"));
     g_free(scratch_write(film.folder, "paper.png", "a sheet"));
     g_autofree char *png = g_build_filename(film.folder, "p.png", NULL);
@@ -93,12 +129,17 @@ static void film_make(void)
     cairo_surface_destroy(picture);
     for (int f = 1; f <= 4; f += f) { // one is missing
         g_autofree char *name = g_strdup_printf("w_%d.svg", f);
+        g_autofree char *simple = g_strdup_printf("s_%d.svg", f);
         g_autofree char *flow = g_strdup_printf("f_%d.flo", f);
         g_autofree char *ground = g_strdup_printf("b_%d.png", f);
         g_free(scratch_svg(film.folder, name,
                            "<style>@import 'look.css';</style><circle cx='50' cy='50' r='30'/>"
                            "<text x='5' y='20' font-family='DejaVu Sans'>Ab</text>"
                            "<image href='p.png' width='9' height='9'/>"));
+        if (f != 2)
+            g_free(scratch_svg(film.folder, simple,
+                               "<circle cx='50' cy='50' r='30' fill='#a31'/>"
+                               "<circle cx='50' cy='20' r='9'/>"));
         g_free(scratch_write(film.folder, flow, "a flow"));
         g_free(scratch_write(film.folder, ground, "a ground"));
     }
@@ -110,8 +151,9 @@ static void film_make(void)
 static void film_clear(void)
 {
     remove_folder(film.folder);
-    char *const paths[] = {film.inputs, film.output,     film.cache, film.style,  film.ink,
-                           film.flow,   film.background, film.paper, film.config, film.state};
+    char *const paths[] = {film.inputs, film.simple, film.output, film.cache,
+                           film.style,  film.ink,    film.flow,   film.background,
+                           film.paper,  film.config, film.state};
     for (size_t k = 0; k < G_N_ELEMENTS(paths); k++)
         g_free(paths[k]);
     g_free(film.folder);
@@ -207,6 +249,14 @@ static FlRenderOptions options_of(const char *inputs[2], FlSetting settings[3])
                              .n_settings = 2,
                              .missing = FL_MISSING_HOLD,
                              .overwrite = FL_OVERWRITE_YES};
+}
+
+/* Those of the simple film, of two files. */
+static FlRenderOptions simple_options_of(const char *inputs[2], FlSetting settings[3])
+{
+    const FlRenderOptions options = options_of(inputs, settings);
+    inputs[0] = film.simple;
+    return options;
 }
 
 /* ---- files ----------------------------------------------------------------------------------- */
@@ -336,7 +386,7 @@ static void check_option(const FlOption *o, FlDigest made_from, GPtrArray *strin
 {
     const char *inputs[2];
     FlSetting settings[3];
-    FlRenderOptions options = options_of(inputs, settings);
+    FlRenderOptions options = simple_options_of(inputs, settings);
     g_autofree char *value = option_other_value(o);
     g_autoptr(GError) refused = NULL;
     if (!set(o, value, &options, &settings[2], strings))
@@ -358,7 +408,7 @@ static void a_change_of_any_option_starts_the_render_anew(void)
     const char *inputs[2];
     FlSetting settings[3];
     g_autoptr(GPtrArray) strings = g_ptr_array_new_with_free_func(g_free);
-    const FlRenderOptions options = options_of(inputs, settings);
+    const FlRenderOptions options = simple_options_of(inputs, settings);
     int n = 0;
     leave(&options, true);
     leave(&options, false); // beside the record of the finished one
@@ -447,7 +497,7 @@ static void settings_count_for_frames_and_paint(void)
         for (int i = 0; i < 2; i++) {
             const char *inputs[2];
             FlSetting settings[3];
-            FlRenderOptions options = options_of(inputs, settings);
+            FlRenderOptions options = simple_options_of(inputs, settings);
             settings[1] = (FlSetting){.name = cases[k].name, .value = cases[k].value[i]};
             options.config_text = cases[k].config[i];
             digests[i] = digests_of(&options);
