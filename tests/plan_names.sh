@@ -5,14 +5,31 @@
 plugin=$(realpath "${0%/*}/../src/plugins/inkscape/fluidy_paint.py")
 . "${0%/*}/film.sh"
 
-# Each of these would run `pwn` if a name became a part of a program.
-endings=(
-    $'\npwn\n' ';pwn;' '|pwn|' '&pwn&' '$(pwn)' '`pwn`' "'\$(pwn)'" '"$(pwn)"' "';pwn;'" '";pwn;"' "\\';pwn;\\'"
-    '|;e pwn #' '|e pwn' $'\nTASKS\npwn\n' $'\nTASKS\n)\npwn\n' $'\nMERGE\npwn\n' $'\nMERGE\n)\npwn\n' '${x:=$(pwn)}'
-    '{{Param.Folder}}' '{{Task.Param.Regions}}' '}}{{Session.WorkingDirectory}}' $')\npwn\n(' '<(pwn)' $'\r\npwn\r\n'
-    ' -e pwn' '%x%(pwn)%%n' '#!pwn' $'\e]0;pwn\a' $'\xff;pwn' ' --wrap=pwn ' '*?[a-z]{pwn,pwn}' '~pwn!pwn' $'\\\npwn\n'
-    '$IFS$(pwn)' $'\t;pwn\n#SBATCH --wrap=pwn\n')
-heads=("a" "it's" '-"') # the first before every ending, the others by turns
+# Each of these would run `pwn` if a name became a part of a program. Four of them make a name, after heads by turns: each
+# word that a command gets is compared as a whole. What a dialect may refuse, control characters and bytes that are no
+# text, is in names of its own.
+plain=(
+    ';pwn;' '|pwn|' '&pwn&' '$(pwn)' '`pwn`' "'\$(pwn)'" '"$(pwn)"' "';pwn;'" '";pwn;"' "\\';pwn;\\'"
+    '|;e pwn #' '|e pwn' '${x:=$(pwn)}' '{{Param.Folder}}' '{{Task.Param.Regions}}' '}}{{Session.WorkingDirectory}}'
+    '<(pwn)' ' -e pwn' '%x%(pwn)%%n' '#!pwn' ' --wrap=pwn ' '*?[a-z]{pwn,pwn}' '~pwn!pwn' '$IFS$(pwn)')
+control=(
+    $'\npwn\n' $'\nTASKS\npwn\n' $'\nTASKS\n)\npwn\n' $'\nMERGE\npwn\n' $'\nMERGE\n)\npwn\n' $')\npwn\n('
+    $'\r\npwn\r\n' $'\e]0;pwn\a' $'\\\npwn\n' $'\t;pwn\n#SBATCH --wrap=pwn\n')
+heads=("a" "it's" '-"')
+names=()
+
+# chain ENDING...: adds names of four endings, and of what is left
+chain() {
+    local name='' k=0 ending
+    for ending; do
+        name+=${heads[k % 3]}$ending k=$((k + 1))
+        [ $((k % 4)) = 0 ] || [ $k = $# ] || continue
+        names+=("$name") name=''
+    done
+}
+chain "${plain[@]}"
+chain "${control[@]}"
+chain $'\xff;pwn'
 
 mkdir bin hostile
 cat >bin/fluidy-svg <<'END'
@@ -115,41 +132,37 @@ is_wrong() { # is_wrong DIALECT
     echo "# wrong in $1: $(printf %q "$name"): $(tail -1 "$folder/err")"
 }
 
-executed=0 wrong=0 refused=0 names=0
-for head in "${heads[@]}"; do
-    for k in "${!endings[@]}"; do
-        ending=${endings[k]}
-        [ "$head" = "${heads[0]}" ] || [ "$head" = "${heads[k % 2 + 1]}" ] || continue
-        name=$head$ending place=hostile/$head$ending names=$((names + 1))
-        mkdir -p "$place/$name"
-        cp 1.svg "$place/$name/${name}_1.svg" && cp 2.svg "$place/$name/${name}_2.svg"
-        RECORD=$PWD/slurm.record
-        rm -f ./*.record log
-        plan slurm >plan.sh 2>err && PATH=$PWD/bin:$PATH bash plan.sh >out 2>>err </dev/null &&
-            [ "$(tr '\0' '\n' <slurm.record | grep -c '^end$')" = 3 ] &&
-            [ "$(wc -l <"$place/log")" = 3 ] || is_wrong slurm
-        planned=()
-        for dialect in json openjd; do
-            if plan $dialect >$dialect.json 2>err; then
-                planned+=($dialect)
-            else
-                says 'cannot hold this name' && refused=$((refused + 1)) || is_wrong $dialect
-            fi
-        done
-        if [ ${#planned[@]} -gt 0 ] && command -v python3 >/dev/null; then
-            RECORD='' PATH=$PWD/bin:$PATH python3 run.py "$name" "${planned[@]}" >out 2>err ||
-                is_wrong "${planned[*]}"
-        fi
-        [ "$head" != "${heads[0]}" ] || film
-        if [ -e pwned ]; then
-            executed=$((executed + 1))
-            echo "# executed: $(printf %q "$name")"
-            rm pwned
+executed=0 wrong=0 refused=0
+for name in "${names[@]}"; do
+    place=hostile/$name
+    mkdir -p "$place/$name"
+    cp 1.svg "$place/$name/${name}_1.svg" && cp 2.svg "$place/$name/${name}_2.svg"
+    RECORD=$PWD/slurm.record
+    rm -f ./*.record log
+    plan slurm >plan.sh 2>err && PATH=$PWD/bin:$PATH bash plan.sh >out 2>>err </dev/null &&
+        [ "$(tr '\0' '\n' <slurm.record | grep -c '^end$')" = 3 ] &&
+        [ "$(wc -l <"$place/log")" = 3 ] || is_wrong slurm
+    planned=()
+    for dialect in json openjd; do
+        if plan $dialect >$dialect.json 2>err; then
+            planned+=($dialect)
+        else
+            says 'cannot hold this name' && refused=$((refused + 1)) || is_wrong $dialect
         fi
     done
+    if [ ${#planned[@]} -gt 0 ] && command -v python3 >/dev/null; then
+        RECORD='' PATH=$PWD/bin:$PATH python3 run.py "$name" "${planned[@]}" >out 2>err ||
+            is_wrong "${planned[*]}"
+    fi
+    film
+    if [ -e pwned ]; then
+        executed=$((executed + 1))
+        echo "# executed: $(printf %q "$name")"
+        rm pwned
+    fi
 done
-[ $names -ge 70 ] && [ $executed = 0 ]
-result $? "none of $names hostile names is executed by a plan, a film or a plug-in, $executed are"
+[ ${#names[@]} = 10 ] && [ $executed = 0 ]
+result $? "none of ${#names[@]} hostile names is executed by a plan, a film or a plug-in, $executed are"
 [ $wrong = 0 ]
 result $? "each command gets the names as they are, or the plan is refused ($refused), $wrong are wrong"
 
