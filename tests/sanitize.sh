@@ -1,15 +1,16 @@
 #!/bin/bash
 # Runs tests in a build that watches memory, threads or arithmetic, or has the sources analysed.
-# usage: sanitize.sh address|thread|fuzz|memcheck|analysers|bare BUILD-DIR, in the source folder; each has a
-# folder of its own, but memcheck and analysers may share the one of an ordinary build.
+# usage: sanitize.sh address|fuzz|thread|memcheck|analysers|bare BUILD-DIR, in the source folder; each has a
+# folder of its own, but address and fuzz share one, and memcheck and analysers may have that of an ordinary build.
 #
-# address: the suite but for what tests/meson.build leaves out, with AddressSanitizer, LeakSanitizer and
-#   UndefinedBehaviorSanitizer.
+# address: tests with AddressSanitizer, LeakSanitizer and UndefinedBehaviorSanitizer of clang: units but for the long ones,
+#   corpora, hostile drawings, faults of the system, and a render from paint that is kept. The other scripts paint as
+#   these do, in seven times the time of a plain build; HACKING.md says how to run all of them.
+# fuzz: every target of tests/fuzz for 20 seconds, in the same build.
 # thread: what uses threads, ThreadSanitizer with clang. gcc's reports false races in OpenMP; Archer
 #   tells clang's what OpenMP orders, and tsan_glib.c what GLib does. GLib's own slices, handed from
 #   a thread that has ended to the next, would be taken for shared.
 #   It also fails if clang warns of anything; .ci/run builds with gcc so.
-# fuzz: every target of tests/fuzz for 20 seconds, with clang and both of address.
 # bare: every optional feature off; what is left is built without warnings, and what would use
 #   a feature does without.
 # memcheck: a short render in valgrind.
@@ -22,23 +23,33 @@ export OMP_WAIT_POLICY=passive FLUIDY_CACHE=off FLUIDY_FIXTURES=$source/fixtures
 
 # What is made by other programs is tried in the ordinary build.
 plain=(-Dapi=disabled -Dpython=disabled)
+# Lines are enough to say where; it builds a fifth sooner.
 make_build() {
-    [ -f "$build/build.ninja" ] || meson setup "$build" -Dbuildtype=debugoptimized "$@"
+    [ -f "$build/build.ninja" ] || meson setup "$build" -Dbuildtype=debugoptimized -Ddebug=false -Dc_args=-g1 "$@"
 }
 
-# A render on several threads, with all that can be written beside it.
+# A render on several threads, and all that can be written beside it.
 render=("$build/src/cli/fluidy-svg" -s fixtures/style-small -W 64 -f 1-2 -j 3 --progress none -y
-    -o "$build/render/%d.png" --report "$build/render/report" --stats "$build/render/stats")
+    -o "$build/render/%d.png" fixtures/animations/snowman-wave-layers)
+beside=(--report "$build/render/report" --stats "$build/render/stats")
 
 case $what in
-address)
-    # lines are enough to say where; it builds a fifth sooner
-    make_build -Db_sanitize=address,undefined -Db_lundef=false -Ddebug=false -Dc_args=-g1 "${plain[@]}"
+address | fuzz)
+    export CC=clang
+    make_build -Dfuzz=enabled -Db_sanitize=address,undefined -Db_lundef=false "${plain[@]}"
+    if [ "$what" = fuzz ]; then
+        ninja -C "$build" fuzzers
+        exec tests/fuzz.sh "$build" 20
+    fi
     export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
     export LSAN_OPTIONS=suppressions=$source/tests/lsan.supp:print_suppressions=0
-    # Meson builds what these tests need. A library with a sanitizer is not for programs without: no
-    # test of pkg-config
-    meson test -C "$build" --no-suite headers --timeout-multiplier 6 --print-errorlogs
+    # Meson builds what these tests need.
+    run=(meson test -C "$build" --timeout-multiplier 6 --print-errorlogs)
+    "${run[@]}" faults hostile
+    "${run[@]}" --suite unit --suite kernels --suite corpora
+    for _ in painted kept; do
+        "${render[@]}" --cache "$build/cache"
+    done
     ;;
 bare)
     make_build --werror -Dopenmp=disabled -Dsimd=disabled -Dexr=disabled -Dora=disabled -Dwebp=disabled -Dsandbox=disabled -Dserve=disabled -Dman=disabled
@@ -62,21 +73,14 @@ thread)
     for program in "${programs[@]}"; do
         "$build/tests/test_$program"
     done
-    "${render[@]}" fixtures/animations/snowman-wave-layers
+    "${render[@]}" "${beside[@]}"
     # without a report, files are written while the next frame is painted
-    "$build/src/cli/fluidy-svg" -s fixtures/style-small -W 64 -f 1-3 -j 3 --progress none -y \
-        -o "$build/render/%d.png" fixtures/animations/snowman-wave-layers
-    ;;
-fuzz)
-    export CC=clang
-    make_build "${plain[@]}" -Dfuzz=enabled -Db_sanitize=address,undefined -Db_lundef=false
-    ninja -C "$build" fuzzers
-    tests/fuzz.sh "$build" 20
+    "${render[@]}" -f 1-3
     ;;
 memcheck)
     make_build
     ninja -C "$build" src/cli/fluidy-svg
-    FLUIDY_CPU_MASK=3 valgrind -q --suppressions=tests/memcheck.supp --error-exitcode=66 "${render[@]}" -j 1 fixtures/animations/snowman-wave-layers
+    FLUIDY_CPU_MASK=3 valgrind -q --suppressions=tests/memcheck.supp --error-exitcode=66 "${render[@]}" "${beside[@]}" -j 1
     ;;
 analysers)
     make_build

@@ -180,7 +180,7 @@ static FlWashEstimate wash_of(bool dots, double wander)
         const double uneven = dots ? 25. * dot : 12 * sin(x * .42) * sin(y * .37 + .1 * x);
         const double turn = wander * sin(x / 9.);
         for (int c = 0; c < 3; c++)
-            last[3 * p + c] = (uint8_t)(last[3 * p + c] - uneven + (c - 1) * turn);
+            last[3 * p + c] = (uint8_t)CLAMP(last[3 * p + c] - uneven + (c - 1) * turn, 0, 255);
     }
     g_assert_true(fl_wash_estimate(style, 1, &found, NULL));
     g_test_message("kurtosis %.1f, hue %.1f: calm %g, hue %g", (double)found.kurtosis,

@@ -167,7 +167,7 @@ static FlSearchCounts counts_of_sweeps(int sweeps, int propagate_from, float set
     fl_vote(&c.nnf, NULL, c.search.level, c.search.kernels, c.params->vote_sharpness, 3,
             c.target.level[0].colour, NULL);
     searched(&c, 1, 0);
-    c.search.settled = (uint32_t)(settled * fl_mean_cost(&c.search));
+    c.search.settled = (uint32_t)MIN((double)settled * (double)fl_mean_cost(&c.search), UINT32_MAX);
     c.search.propagate_from = propagate_from;
     if (remembers)
         c.search.changed = changed = g_malloc((size_t)c.nnf.width * c.nnf.height);

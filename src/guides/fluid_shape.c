@@ -44,6 +44,7 @@ void fl_fluid_lay_cells(FlFluid *f)
         f->column[c] = (float)x, f->line[c] = (float)y;
         f->inner[c] = x > 0 && y > 0 && x < f->stride - 2 && y < f->rows - 2;
         f->wall[c] = x == 0 || y == 0 || x == f->stride - 1 || y == f->rows - 1;
+        f->label[c] = NONE; // until a frame has parts
     }
 }
 

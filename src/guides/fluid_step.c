@@ -132,8 +132,8 @@ static void find_pace(FlFluid *f)
         if (fabsf(f->distance[c]) < 1 && fabsf(f->speed[c]) >= RESTS)
             part->pace += (double)(f->speed[c] * f->speed[c]), part->rests = false;
     }
-    FlFluidPart *part = &g_array_index(f->parts, FlFluidPart, 0);
-    for (guint left = part ? f->parts->len : 0; left > 0; left--, part++) {
+    for (guint i = 0; i < f->parts->len; i++) {
+        FlFluidPart *part = &g_array_index(f->parts, FlFluidPart, i);
         const double was = part->was / part->cells, now = part->pace / MAX(part->contour, 1);
         part->pace = now > was ? .5 * (now + was) : .9 * was + .1 * now;
         part->pace *= part->rests ? (double)SLOWS : 1;

@@ -132,8 +132,8 @@ static bool answer(FlServant *servant, const FlRequest *r, GByteArray *out, GErr
 GByteArray *fl_serve(FlServant *servant, const void *bytes, size_t n)
 {
     FlReader reader = fl_reader_over(bytes, n);
+    FlHand hand; /* the request holds on to it */
     g_auto(FlRequest) request = {0};
-    FlHand hand;
     g_autoptr(GError) problem = NULL;
     GByteArray *out = g_byte_array_new();
     fl_put_int(out, 0);
