@@ -6,12 +6,13 @@ plugin=$(realpath "${0%/*}/../src/plugins/inkscape/fluidy_paint.py")
 . "${0%/*}/film.sh"
 
 # Each of these would run `pwn` if a name became a part of a program. Four of them make a name, after heads by turns: each
-# word that a command gets is compared as a whole. What a dialect may refuse, control characters and bytes that are no
-# text, is in names of its own.
+# word that a command gets is compared as a whole. What a dialect may refuse is in names of its
+# own: braces, control characters and bytes that are no text.
 plain=(
     ';pwn;' '|pwn|' '&pwn&' '$(pwn)' '`pwn`' "'\$(pwn)'" '"$(pwn)"' "';pwn;'" '";pwn;"' "\\';pwn;\\'"
-    '|;e pwn #' '|e pwn' '${x:=$(pwn)}' '{{Param.Folder}}' '{{Task.Param.Regions}}' '}}{{Session.WorkingDirectory}}'
-    '<(pwn)' ' -e pwn' '%x%(pwn)%%n' '#!pwn' ' --wrap=pwn ' '*?[a-z]{pwn,pwn}' '~pwn!pwn' '$IFS$(pwn)')
+    '|;e pwn #' '|e pwn' '${x:=$(pwn)}' '<(pwn)' ' -e pwn' '%x%(pwn)%%n' '#!pwn' ' --wrap=pwn ' '*?[a-z]{pwn,pwn}'
+    '~pwn!pwn' '$IFS$(pwn)')
+braces=('{{Param.Folder}}' '{{Task.Param.Regions}}' '}}{{Session.WorkingDirectory}}')
 control=(
     $'\npwn\n' $'\nTASKS\npwn\n' $'\nTASKS\n)\npwn\n' $'\nMERGE\npwn\n' $'\nMERGE\n)\npwn\n' $')\npwn\n('
     $'\r\npwn\r\n' $'\e]0;pwn\a' $'\\\npwn\n' $'\t;pwn\n#SBATCH --wrap=pwn\n')
@@ -28,6 +29,7 @@ chain() {
     done
 }
 chain "${plain[@]}"
+chain "${braces[@]}"
 chain "${control[@]}"
 chain $'\xff;pwn'
 
@@ -161,7 +163,7 @@ for name in "${names[@]}"; do
         rm pwned
     fi
 done
-[ ${#names[@]} = 10 ] && [ $executed = 0 ]
+[ ${#names[@]} = 11 ] && [ $executed = 0 ]
 result $? "none of ${#names[@]} hostile names is executed by a plan, a film or a plug-in, $executed are"
 [ $wrong = 0 ]
 result $? "each command gets the names as they are, or the plan is refused ($refused), $wrong are wrong"
