@@ -149,6 +149,70 @@ static void test_sway(void)
     g_assert_cmpfloat(error_of(swaying, 48, sway_of_last), <, .18);
 }
 
+/* A puff that drifts and swells, so that its rear rests on the page: nothing comes in there. */
+static double puff_size(int frame)
+{
+    return 30 * exp(.01 * frame);
+}
+
+static double swelling(double x, double y, int frame)
+{
+    return puff_size(frame) - hypot(x - 70 - .45 * frame, y - 130 + .45 * frame);
+}
+
+static void swell_of_last(double x, double y, double out[2])
+{
+    const double share = 1 - puff_size(39) / puff_size(40);
+    out[0] = .45 + share * (x - 70 - .45 * 40);
+    out[1] = -.45 + share * (y - 130 + .45 * 40);
+}
+
+/* A hull that rocks to and fro. */
+static double rocking(double x, double y, int frame)
+{
+    const double turn = .3 * sin(.15 * frame), c = cos(turn), s = sin(turn);
+    const double u = c * (x - 100) + s * (y - 100), v = c * (y - 100) - s * (x - 100);
+    return MIN(MIN(v + 25, 25 - v), 60 - fabs(u) - .5 * (v + 25));
+}
+
+static void rock_of_last(double x, double y, double out[2])
+{
+    const double turn = .3 * (sin(.15 * 40) - sin(.15 * 39)), c = cos(turn), s = sin(turn);
+    out[0] = (x - 100) - (c * (x - 100) + s * (y - 100));
+    out[1] = (y - 100) - (c * (y - 100) - s * (x - 100));
+}
+
+/* A wave on deep water that runs across the page. */
+static double rolling(double x, double y, int frame)
+{
+    return y - 90 + 9 * cos(2 * G_PI * x / 100 - .25 * frame);
+}
+
+static void roll_of_last(double x, double y, double out[2])
+{
+    const double k = 2 * G_PI / 100, phase = k * x - .25 * 39.5, speed = 9 * .25;
+    out[0] = speed * exp(-k * MAX(y - 90, -9)) * cos(phase);
+    out[1] = -speed * exp(-k * MAX(y - 90, -9)) * sin(phase);
+}
+
+/* What an affine motion of the outline explains is that motion; but a wave is not its outline's. */
+static void test_outline(void)
+{
+    static const struct {
+        Shape shape;
+        void (*truth)(double x, double y, double out[2]);
+        double most;
+    } films[] = {
+        {swelling, swell_of_last, .1}, {rocking, rock_of_last, .1}, {rolling, roll_of_last, .6}};
+    for (size_t k = 0; k < G_N_ELEMENTS(films); k++) {
+        g_autoptr(FlFluid) fluid = fluid_of("plain");
+        for (int frame = 1; frame <= 40; frame++)
+            flow(fluid, films[k].shape, frame - 1, frame);
+        g_test_message("film %zu, error %g", k, error_of(films[k].shape, 40, films[k].truth));
+        g_assert_cmpfloat(error_of(films[k].shape, 40, films[k].truth), <, films[k].most);
+    }
+}
+
 /* A column whose top rises: what it gains has to come in. */
 static double rising(double x, double y, int frame)
 {
@@ -364,6 +428,7 @@ int main(int argc, char **argv)
     g_test_add_func("/fluid/strain", test_strain);
     g_test_add_func("/fluid/held", test_held);
     g_test_add_func("/fluid/sway", test_sway);
+    g_test_add_func("/fluid/outline", test_outline);
     g_test_add_func("/fluid/growth", test_growth);
     g_test_add_func("/fluid/flux", test_flux);
     g_test_add_func("/fluid/rest", test_rest);

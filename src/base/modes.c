@@ -23,6 +23,27 @@ void fl_least_squares_ridge(FlLeastSquares *sum, int k, double ridge)
     sum->a[k][k] += ridge;
 }
 
+void fl_affine_motion_at(const FlAffineMotion *motion, double x, double y, double u[2])
+{
+    double mode[FL_MODES][2];
+    fl_modes_at((x - motion->x) / motion->size, (y - motion->y) / motion->size, mode);
+    u[0] = u[1] = 0;
+    for (int k = 0; k < FL_MODES; k++)
+        u[0] += motion->p[k] * mode[k][0], u[1] += motion->p[k] * mode[k][1];
+}
+
+void fl_affine_motion_add(const FlAffineMotion *motion, double x, double y,
+                          const double gradient[2], double d, double weight, FlLeastSquares *sum)
+{
+    double mode[FL_MODES][2], row[FL_MODES], value = -d;
+    fl_modes_at((x - motion->x) / motion->size, (y - motion->y) / motion->size, mode);
+    for (int k = 0; k < FL_MODES; k++) {
+        row[k] = -(mode[k][0] * gradient[0] + mode[k][1] * gradient[1]);
+        value += row[k] * motion->p[k];
+    }
+    fl_least_squares_add(sum, row, value, weight);
+}
+
 bool fl_least_squares_solve(const FlLeastSquares *sum, double p[FL_MODES])
 {
     double a[FL_MODES][FL_MODES + 1];

@@ -22,5 +22,18 @@ void fl_least_squares_add(FlLeastSquares *sum, const double row[FL_MODES], doubl
 /** Adds ridge * p_k². */
 void fl_least_squares_ridge(FlLeastSquares *sum, int k, double ridge);
 
+/** An affine motion: the modes at (x - this x) / size and so on, by p. */
+typedef struct FlAffineMotion {
+    double x, y, size, p[FL_MODES];
+} FlAffineMotion;
+
+/** The displacement of a point. */
+void fl_affine_motion_at(const FlAffineMotion *motion, double x, double y, double u[2]);
+
+/** Adds, after Gauss and Newton, that d at the point is to become 0: `gradient` is that of d where
+ * the motion says that the point was. */
+void fl_affine_motion_add(const FlAffineMotion *motion, double x, double y,
+                          const double gradient[2], double d, double weight, FlLeastSquares *sum);
+
 /** Returns: false if the unknowns are not determined. */
 bool fl_least_squares_solve(const FlLeastSquares *sum, double p[FL_MODES]);

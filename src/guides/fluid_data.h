@@ -6,6 +6,7 @@
  * the fluid, so that all others have neighbours and all four faces. */
 #pragma once
 
+#include "base/modes.h"
 #include "guides/fluid.h"
 #include "guides/pressure.h"
 #include <string.h>
@@ -15,22 +16,24 @@
 
 /** A part of the region in the frame in hand. */
 typedef struct FlFluidPart {
-    float tx, ty, turn;   // its motion as a rigid body; the turn is the speed at `radius`
-    float cx, cy, radius; // of its contour
-    double m[3][3], g[3]; // to fit that motion
-    int cells, contour;   // numbers of them
-    float deepest;        // distance
-    bool overlaps;        // the shape of the frame before
-    bool fresh;           // no velocity was carried into it
-    bool known;           // false: it is new, or leaps
-    bool flows;           // false: it moves as a rigid body
-    bool rests;           // its contour does
-    double pace, was;     // mean square of the contour's speed, slowly falling
-    float rise;           // speed of what rises through it
-    double top[2];        // of the speeds at which its top rises: sums of powers
-    double area, growth;  // open area; gain of a frame
-    double emitters;      // weight of the contour that may let it in
-    double in, out;       // contour that lets in, and out, what rises
+    FlAffineMotion rigid, affine; // about the middle of its contour
+    FlLeastSquares fit;           // to find them
+    double left[3];      // squares of the distances that these and its fluid do not explain
+    double trust, even;  // share of its velocity, of its growth, that is its affine motion's
+    int cells, contour;  // numbers of them
+    float deepest;       // distance
+    bool overlaps;       // the shape of the frame before
+    bool open[4];        // to the page's left, right, upper and lower edge
+    bool fresh;          // no velocity was carried into it
+    bool known;          // false: it is new, or leaps
+    bool flows;          // false: it moves as a rigid body
+    bool rests;          // its contour does
+    double pace, was;    // mean square of the contour's speed, slowly falling
+    float rise;          // speed of what rises through it
+    double top[2];       // of the speeds at which its top rises: sums of powers
+    double area, growth; // open area; gain of a frame
+    double emitters;     // weight of the contour that may let it in
+    double in, out;      // contour that lets in, and out, what rises
 } FlFluidPart;
 
 struct FlFluid {
@@ -100,6 +103,14 @@ void fl_fluid_measure(FlFluid *f, const FlOutline *outline, float *distance);
  * the normal velocity of the contour. */
 void fl_fluid_read_shape(FlFluid *f);
 
-/** The motion of a part as a rigid body, at a place. */
-void fl_fluid_rigid(const FlFluidPart *part, float x, float y, float motion[2]);
+/** The motion of a part at a place: its rigid or its affine one. */
+static inline void fl_fluid_move(const FlAffineMotion *of, float x, float y, float motion[2])
+{
+    double u[2];
+    fl_affine_motion_at(of, (double)x, (double)y, u);
+    motion[0] = (float)u[0], motion[1] = (float)u[1];
+}
+
+/** The displacement of the fluid at a place since the frame before. */
+void fl_fluid_way(const FlFluid *f, float x, float y, float way[2]);
 float fl_fluid_bulk_speed(const FlFluidPart *part);

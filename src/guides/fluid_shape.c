@@ -9,6 +9,8 @@
 #define FAR 40      // the largest distance
 #define DEEP 7      // from the contour; beyond that the distance may be coarse
 #define FIT_STEPS 15
+#define NOISE .03       // cells: a mean distance that is none
+#define CLEARLY 20      // by so much an affine motion has to explain a contour better
 #define LEAST_CONTOUR 6 // cells of contour of a part that flows
 #define LEAP .05f       // of the page's larger side
 #define BORN 2.5f       // cells outside the shape that motion foretells, where a puff begins
@@ -127,18 +129,19 @@ static void visit(FlFluid *f, int c, float open, int32_t label, int *last)
 static void fill_part(FlFluid *f, int first)
 {
     const int32_t label = (int32_t)f->parts->len;
-    FlFluidPart part = {.deepest = -FAR, .radius = 1, .fresh = true, .rests = true};
+    FlFluidPart part = {.deepest = -FAR, .fresh = true, .rests = true};
     int last = 0;
     visit(f, first, 1, label, &last);
     for (int k = 0; k < last; k++) {
-        const int c = f->queue[k];
+        const int c = f->queue[k], s = f->stride, beside[] = {c - 1, c + 1, c - s, c + s};
+        const float open[] = {f->open_u[c], f->open_u[c + 1], f->open_v[c], f->open_v[c + s]};
         part.cells++;
         part.deepest = MAX(part.deepest, f->distance[c]);
         part.overlaps |= f->before[c] > 0;
-        visit(f, c - 1, f->open_u[c], label, &last);
-        visit(f, c + 1, f->open_u[c + 1], label, &last);
-        visit(f, c - f->stride, f->open_v[c], label, &last);
-        visit(f, c + f->stride, f->open_v[c + f->stride], label, &last);
+        for (int d = 0; d < 4; d++) {
+            visit(f, beside[d], open[d], label, &last);
+            part.open[d] |= open[d] > 0 && !f->inner[beside[d]];
+        }
     }
     g_array_append_val(f->parts, part);
 }
@@ -153,14 +156,9 @@ static void find_parts(FlFluid *f)
             fill_part(f, c);
 }
 
-void fl_fluid_rigid(const FlFluidPart *part, float x, float y, float motion[2])
-{
-    motion[0] = part->tx - part->turn * (y - part->cy) / part->radius;
-    motion[1] = part->ty + part->turn * (x - part->cx) / part->radius;
-}
-
 /** Lists the cells of contour, by which the parts' motion is found, and finds the middle of each
- * part's contour. Returns: their number. */
+ * part's contour. A part that spans the page shows no motion of its own: a wave that runs through
+ * is no water that does. Returns: their number. */
 static int list_contour(FlFluid *f)
 {
     int n = 0;
@@ -171,113 +169,140 @@ static int list_contour(FlFluid *f)
         const float x = f->column[c], y = f->line[c];
         f->queue[n++] = c;
         part->contour++;
-        part->cx += x, part->cy += y;
-        part->g[0] += (double)(x * x + y * y);
+        part->affine.x += (double)x, part->affine.y += (double)y;
+        part->affine.size += (double)(x * x + y * y);
     }
     for (guint l = 0; l < f->parts->len; l++) {
         FlFluidPart *part = &g_array_index(f->parts, FlFluidPart, l);
-        const float share = 1 / (float)MAX(part->contour, 1);
-        part->cx *= share, part->cy *= share;
-        const float square = (float)part->g[0] * share - part->cx * part->cx - part->cy * part->cy;
-        part->radius = sqrtf(MAX(square, 1));
+        FlAffineMotion *m = &part->affine;
+        const double n_cells = MAX(part->contour, 1);
+        m->x /= n_cells, m->y /= n_cells;
+        m->size = sqrt(MAX(m->size / n_cells - m->x * m->x - m->y * m->y, 1));
         part->known = part->overlaps && part->contour > 0;
     }
     return n;
 }
 
-/** Adds a cell of contour to the equations for a step towards the rigid motion that explains how
- * distances have changed, after Gauss and Newton. */
+/** The change of the distance of a cell that a motion does not explain. */
+static float unexplained(const FlFluid *f, int c, const float motion[2])
+{
+    return f->distance[c] -
+           fl_fluid_sample(f, f->before, f->column[c] - motion[0], f->line[c] - motion[1]);
+}
+
+/** Adds a cell of contour to the equations for the affine motion of its part, after Gauss and
+ * Newton. */
 static void add_equation(const FlFluid *f, int c, FlFluidPart *part)
 {
     const float x = f->column[c], y = f->line[c];
     float motion[2];
-    fl_fluid_rigid(part, x, y, motion);
-    const float u = x - motion[0], v = y - motion[1];
-    const float e = f->distance[c] - fl_fluid_sample(f, f->before, u, v);
-    const float dx =
-        .5f * (fl_fluid_sample(f, f->before, u + 1, v) - fl_fluid_sample(f, f->before, u - 1, v));
-    const float dy =
-        .5f * (fl_fluid_sample(f, f->before, u, v + 1) - fl_fluid_sample(f, f->before, u, v - 1));
-    const float turn = (dy * (x - part->cx) - dx * (y - part->cy)) / part->radius;
-    const float way[3] = {dx, dy, turn}, weight = 1 / (1 + e * e / 4);
-    for (int i = 0; i < 3; i++) {
-        part->g[i] -= (double)(weight * way[i] * e);
-        for (int j = 0; j < 3; j++)
-            part->m[i][j] += (double)(weight * way[i] * way[j]);
+    fl_fluid_move(&part->affine, x, y, motion);
+    const float u = x - motion[0], v = y - motion[1], e = unexplained(f, c, motion);
+    const float *before = f->before;
+    const double gradient[2] = {
+        .5 * (double)(fl_fluid_sample(f, before, u + 1, v) - fl_fluid_sample(f, before, u - 1, v)),
+        .5 * (double)(fl_fluid_sample(f, before, u, v + 1) - fl_fluid_sample(f, before, u, v - 1))};
+    fl_affine_motion_add(&part->affine, (double)x, (double)y, gradient, -(double)e,
+                         (double)(1 / (1 + e * e / 4)), &part->fit);
+}
+
+/** Takes a step of at most two cells to the motion that explains the contour of a part. */
+static void take_step(FlFluidPart *part, const double ridges[FL_MODES])
+{
+    double p[FL_MODES], longest = 2;
+    for (int k = 0; k < FL_MODES; k++)
+        fl_least_squares_ridge(&part->fit, k, ridges[k] * part->contour);
+    if (!fl_least_squares_solve(&part->fit, p))
+        return;
+    for (int k = 0; k < FL_MODES; k++)
+        longest = MAX(longest, fabs(p[k] - part->affine.p[k]));
+    for (int k = 0; k < FL_MODES; k++)
+        part->affine.p[k] += 2 / longest * (p[k] - part->affine.p[k]);
+}
+
+static void fit_motion(FlFluid *f, int contour, const double ridges[FL_MODES])
+{
+    FlFluidPart *const parts = (FlFluidPart *)(void *)f->parts->data;
+    for (int step = 0; step < FIT_STEPS; step++) {
+        for (guint l = 0; l < f->parts->len; l++)
+            parts[l].fit = (FlLeastSquares){0};
+        for (int k = 0; k < contour; k++)
+            add_equation(f, f->queue[k], fl_fluid_part(f, f->queue[k]));
+        for (guint l = 0; l < f->parts->len; l++) {
+            const bool *open = parts[l].open;
+            if (parts[l].known && !(open[0] && open[1]) && !(open[2] && open[3]))
+                take_step(&parts[l], ridges);
+        }
     }
 }
 
-/** Solves the equations, which are positive definite, and takes the step. */
-static void take_step(FlFluidPart *part)
+/** Sums what the motions of its part leave unexplained at a cell. */
+static void judge_motions(const FlFluid *f, int c, FlFluidPart *part)
 {
-    double(*m)[3] = part->m, *g = part->g;
-    for (int i = 0; i < 3; i++)
-        for (int r = i + 1; r < 3; r++) {
-            const double share = m[r][i] / m[i][i];
-            for (int j = i; j < 3; j++)
-                m[r][j] -= share * m[i][j];
-            g[r] -= share * g[i];
-        }
-    for (int i = 2; i >= 0; i--) {
-        for (int j = i + 1; j < 3; j++)
-            g[i] -= m[i][j] * g[j];
-        g[i] /= m[i][i];
+    const float x = f->column[c], y = f->line[c], memory = f->dials.memory;
+    float way[3][2];
+    fl_fluid_move(&part->rigid, x, y, way[0]);
+    fl_fluid_move(&part->affine, x, y, way[1]);
+    fl_fluid_way(f, x, y, way[2]);
+    way[2][0] *= memory, way[2][1] *= memory;
+    for (int k = 0; k < 3; k++) {
+        const float e = unexplained(f, c, way[k]);
+        part->left[k] += (double)(e * e / (1 + e * e / 4)) - NOISE * NOISE;
     }
-    const double length = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-    const double share = length > 2 ? 2 / length : 1;
-    part->tx += (float)(share * g[0]), part->ty += (float)(share * g[1]);
-    part->turn += (float)(share * g[2]);
+}
+
+/** 1: an affine motion explains all that another one leaves; 0: not clearly more than that. */
+static double advantage(double left_by_affine, double left)
+{
+    return left > 0 ? MAX(0, 1 - CLEARLY * MAX(left_by_affine, 0) / left) : 0;
 }
 
 float fl_fluid_bulk_speed(const FlFluidPart *part)
 {
-    return sqrtf(part->tx * part->tx + part->ty * part->ty);
+    return (float)hypot(part->rigid.p[0], part->rigid.p[1]);
 }
 
-/** Finds the rigid motion of all parts. One that leaps by more than its size and more than a little
- * of the page is not known to be the part that was there before. */
+/** Finds the rigid and the affine motion of all parts; what their contours do not show is 0. A part
+ * that only gets longer is fed at its end; one that grows on all sides swells. One that leaps by
+ * more than its size and more than a little of the page is not known to be the part that was there
+ * before. */
 static void fit_parts(FlFluid *f)
 {
+    static const double rigid[FL_MODES] = {.002, .002, .01, 1e6, 1e6, 1e6},
+                        affine[FL_MODES] = {.002, .002, .01, .03, .03, .03};
     FlFluidPart *const parts = (FlFluidPart *)(void *)f->parts->data;
     const int n = list_contour(f);
-    for (int step = 0; step < FIT_STEPS; step++) {
-        for (guint l = 0; l < f->parts->len; l++) {
-            const double ridge = .01 * parts[l].contour;
-            memset(parts[l].m, 0, sizeof parts[l].m);
-            memset(parts[l].g, 0, sizeof parts[l].g);
-            parts[l].m[0][0] = parts[l].m[1][1] = ridge, parts[l].m[2][2] = 3 * ridge;
-        }
-        for (int k = 0; k < n; k++)
-            add_equation(f, f->queue[k], fl_fluid_part(f, f->queue[k]));
-        for (guint l = 0; l < f->parts->len; l++)
-            if (parts[l].known)
-                take_step(&parts[l]);
-    }
+    fit_motion(f, n, rigid);
+    for (guint l = 0; l < f->parts->len; l++)
+        parts[l].rigid = parts[l].affine;
+    fit_motion(f, n, affine);
+    for (int k = 0; k < n; k++)
+        judge_motions(f, f->queue[k], fl_fluid_part(f, f->queue[k]));
     for (guint l = 0; l < f->parts->len; l++) {
         FlFluidPart *part = &parts[l];
-        part->known &= fl_fluid_bulk_speed(part) <= MAX(1.4f * part->radius, f->leap);
+        part->known &= fl_fluid_bulk_speed(part) <= MAX(1.4f * (float)part->rigid.size, f->leap);
         if (!part->known)
-            part->tx = part->ty = part->turn = 0;
+            part->rigid = part->affine = (FlAffineMotion){.size = 1};
         part->flows = part->known && part->contour >= LEAST_CONTOUR && part->deepest >= 1;
+        const double *p = part->affine.p, stretch = hypot(p[4], p[5]) / MAX(fabs(p[3]), 1e-9);
+        part->even = advantage(part->left[1], part->left[0]) * MAX(0, 1 - stretch);
+        part->trust = advantage(part->left[1], part->left[2]);
     }
 }
 
 /* ---- contour ------------------------------------------------------------------------------------
  */
 
-/** The distance of a cell in the frame before, where its part's motion says that it was. */
-static float distance_before(const FlFluid *f, int c)
-{
-    float motion[2];
-    fl_fluid_rigid(fl_fluid_part(f, c), f->column[c], f->line[c], motion);
-    return fl_fluid_sample(f, f->before, f->column[c] - motion[0], f->line[c] - motion[1]);
-}
-
 /** Marks a cell that was outside by `depth` both by its part's motion and by the flow. */
 static void mark_born(FlFluid *f, int c, float depth, int *last)
 {
+    const FlFluidPart *part = fl_fluid_part(f, c);
     const float x = f->column[c], y = f->line[c];
-    if (f->label[c] == NONE || f->ring[c] || distance_before(f, c) > -depth)
+    float motion[2];
+    if (!part || f->ring[c])
+        return;
+    fl_fluid_move(&part->rigid, x, y, motion);
+    if (f->distance[c] - unexplained(f, c, motion) > -depth)
         return;
     const float u = fl_fluid_sample(f, f->u, x + .5f, y), v = fl_fluid_sample(f, f->v, x, y + .5f);
     if (fl_fluid_sample(f, f->before, x - u, y - v) <= -depth)
@@ -314,8 +339,8 @@ static void find_contour(FlFluid *f)
                     ay = f->open_v[c] - f->open_v[c + f->stride];
         const float x = f->column[c], y = f->line[c];
         float motion[2];
-        fl_fluid_rigid(part, x, y, motion);
-        const float grown = f->ring[c] ? 0 : f->distance[c] - distance_before(f, c);
+        fl_fluid_move(&part->rigid, x, y, motion);
+        const float grown = f->ring[c] ? 0 : unexplained(f, c, motion);
         f->nx[c] = -dx / slope, f->ny[c] = -dy / slope;
         f->length[c] = sqrtf(ax * ax + ay * ay);
         if (part->known)

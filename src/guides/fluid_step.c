@@ -109,8 +109,7 @@ void fl_fluid_free(FlFluid *f)
     g_free(f);
 }
 
-/** The displacement of the fluid at a place since the frame before. */
-static void way_at(const FlFluid *f, float x, float y, float way[2])
+void fl_fluid_way(const FlFluid *f, float x, float y, float way[2])
 {
     const float u = fl_fluid_sample(f, f->u, x + .5f, y), v = fl_fluid_sample(f, f->v, x, y + .5f);
     way[0] = fl_fluid_sample(f, f->u, x - .5f * u + .5f, y - .5f * v);
@@ -163,7 +162,7 @@ static void carry(FlFluid *f, Faces faces)
         faces.next[c] = 0;
         if (f->distance[c] < -FL_FLUID_NEAR)
             continue;
-        way_at(f, x, y, way);
+        fl_fluid_way(f, x, y, way);
         faces.next[c] =
             f->dials.memory * (part && part->rests ? SLOWS : 1) *
             fl_fluid_sample(f, faces.kept, x - faces.dx - way[0], y - faces.dy - way[1]);
@@ -220,8 +219,8 @@ static void add_forces(FlFluid *f)
     }
 }
 
-/** Pulls faces to the rigid motion of their part, more so near the contour; all of the way where it
- * has no past or is too thin to flow. */
+/** Pulls faces to the affine motion of their part, as far as that is trusted; near the contour more
+ * so; all of the way where it has no past or is too thin to flow. */
 static void stiffen(FlFluid *f, Faces faces, int axis)
 {
     for (int c = 0; c < f->n; c++) {
@@ -230,8 +229,8 @@ static void stiffen(FlFluid *f, Faces faces, int axis)
         if (!part)
             continue;
         const float pull = f->dials.stiff + f->dials.drag / (1 + MAX(f->distance[c], 0));
-        const float share = part->fresh || !part->flows ? 1 : MIN(pull, 1);
-        fl_fluid_rigid(part, f->column[c] + faces.dx, f->line[c] + faces.dy, motion);
+        const float share = part->fresh || !part->flows ? 1 : CLAMP(pull, (float)part->trust, 1);
+        fl_fluid_move(&part->affine, f->column[c] + faces.dx, f->line[c] + faces.dy, motion);
         faces.next[c] += share * (motion[axis] - faces.next[c]);
     }
 }
@@ -243,14 +242,6 @@ static void stiffen(FlFluid *f, Faces faces, int axis)
 static double emitter(const FlFluid *f, int c)
 {
     return (double)(MAX(f->rest[c] - .25f, 0) * f->length[c]);
-}
-
-/** True if a cell has an open face on the page's edge. */
-static bool is_open(const FlFluid *f, int c)
-{
-    return (f->open_u[c] > 0 && !f->inner[c - 1]) || (f->open_u[c + 1] > 0 && !f->inner[c + 1]) ||
-           (f->open_v[c] > 0 && !f->inner[c - f->stride]) ||
-           (f->open_v[c + f->stride] > 0 && !f->inner[c + f->stride]);
 }
 
 /** Counts the frames that contour rests, and the volume that it pushes out of each cell and part.
@@ -268,19 +259,20 @@ static void push_by_contour(FlFluid *f)
         f->missing[c] = -(double)((1 - burn) * f->speed[c] * f->length[c]);
         part->growth -= f->missing[c];
         part->emitters += emitter(f, c);
-        part->area += is_open(f, c) ? HUGE_VAL : (double)fl_fluid_open_area(f, c);
+        part->area += (double)fl_fluid_open_area(f, c);
     }
 }
 
 /** Brings in what parts grow by: in the share `emit`, but no faster than FASTEST_IN, through
- * contour that rests; the rest evenly. Parts that are open to the page take it from there. */
+ * contour that rests; the rest, and that by which they swell, evenly. Parts that are open to the
+ * page take it from there. */
 static void let_in_growth(FlFluid *f)
 {
     for (int c = 0; c < f->n; c++) {
         const FlFluidPart *part = fl_fluid_part(f, c);
-        if (!part || part->area == HUGE_VAL)
+        if (!part || part->open[0] || part->open[1] || part->open[2] || part->open[3])
             continue;
-        const double most = part->growth > 0 ? (double)f->dials.emit * part->growth : 0;
+        const double most = (1 - part->even) * (double)f->dials.emit * MAX(part->growth, 0);
         const double in = MIN(most, FASTEST_IN * part->emitters);
         f->missing[c] += (part->growth - in) * (double)fl_fluid_open_area(f, c) / part->area;
         f->missing[c] += in > 0 ? in * emitter(f, c) / part->emitters : 0;
@@ -409,8 +401,8 @@ static void project(FlFluid *f)
     fl_pressure_solve(f->solver, &cells, f->missing, f->pressure);
     for (guint l = 0; l < f->parts->len; l++) {
         const FlFluidPart *part = &g_array_index(f->parts, FlFluidPart, l);
-        fastest =
-            MAX(fastest, FL_FLUID_FASTEST + fl_fluid_bulk_speed(part) + 2 * fabsf(part->turn));
+        fastest = MAX(fastest, FL_FLUID_FASTEST + fl_fluid_bulk_speed(part) +
+                                   2 * (float)fabs(part->rigid.p[2]));
     }
     take_pressure(f, left_faces(f), fastest);
     continue_outwards(f, left_faces(f));
@@ -436,7 +428,7 @@ static void add_displacement(FlFluid *f)
     for (int c = 0; c < f->n; c++) {
         const float x = f->column[c], y = f->line[c];
         float way[2];
-        way_at(f, x, y, way);
+        fl_fluid_way(f, x, y, way);
         for (int k = 0; k < 2; k++)
             f->moved[k][c] = way[k] + fl_fluid_sample(f, before[k], x - way[0], y - way[1]);
     }

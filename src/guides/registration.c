@@ -93,15 +93,10 @@ static GPtrArray *find_points(const Work *w)
     return all;
 }
 
-/** The frame of a part's modes, and what is known of its motion. */
-typedef struct Map {
-    double x, y, size;
-    double p[FL_MODES];
-} Map;
-
-static Map map_of(const GArray *points)
+/** The frame of a part's motion. */
+static FlAffineMotion map_of(const GArray *points)
 {
-    Map map = {0};
+    FlAffineMotion map = {0};
     for (guint i = 0; i < points->len; i++) {
         const Point *q = &g_array_index(points, Point, i);
         map.x += q->x / points->len, map.y += q->y / points->len;
@@ -115,22 +110,14 @@ static Map map_of(const GArray *points)
     return map;
 }
 
-static void move(const Map *map, double x, double y, double u[2], double mode[FL_MODES][2])
-{
-    fl_modes_at((x - map->x) / map->size, (y - map->y) / map->size, mode);
-    u[0] = u[1] = 0;
-    for (int k = 0; k < FL_MODES; k++)
-        u[0] += map->p[k] * mode[k][0], u[1] += map->p[k] * mode[k][1];
-}
-
 /** The mean distance that is left; sets those of the points. */
-static double measure(const Work *w, const Map *map, GArray *points)
+static double measure(const Work *w, const FlAffineMotion *map, GArray *points)
 {
     double sum = 0;
     for (guint i = 0; i < points->len; i++) {
         Point *q = &g_array_index(points, Point, i);
-        double u[2], mode[FL_MODES][2], g[2];
-        move(map, q->x, q->y, u, mode);
+        double u[2], g[2];
+        fl_affine_motion_at(map, q->x, q->y, u);
         q->d = sample(w, q->x - u[0], q->y - u[1], g);
         sum += fabs(q->d);
     }
@@ -138,20 +125,15 @@ static double measure(const Work *w, const Map *map, GArray *points)
 }
 
 /** One step; false if the equations do not tell. */
-static bool improve(const Work *w, Map *map, const GArray *points, double *step)
+static bool improve(const Work *w, FlAffineMotion *map, const GArray *points, double *step)
 {
     FlLeastSquares sum = {0};
     for (guint i = 0; i < points->len; i++) {
         const Point *q = &g_array_index(points, Point, i);
-        double u[2], mode[FL_MODES][2], g[2], row[FL_MODES];
-        move(map, q->x, q->y, u, mode);
+        double u[2], g[2];
+        fl_affine_motion_at(map, q->x, q->y, u);
         const double d = sample(w, q->x - u[0], q->y - u[1], g);
-        double value = -d;
-        for (int k = 0; k < FL_MODES; k++) {
-            row[k] = -(mode[k][0] * g[0] + mode[k][1] * g[1]);
-            value += row[k] * map->p[k];
-        }
-        fl_least_squares_add(&sum, row, value, 1 / (1 + d * d / (SOFT_PX * SOFT_PX)));
+        fl_affine_motion_add(map, q->x, q->y, g, d, 1 / (1 + d * d / (SOFT_PX * SOFT_PX)), &sum);
     }
     for (int k = 0; k < FL_MODES; k++)
         fl_least_squares_ridge(&sum, k, points->len * (k < 3 ? FIRM : STIFF));
@@ -166,7 +148,7 @@ static bool improve(const Work *w, Map *map, const GArray *points, double *step)
 }
 
 /** Finds the map from a start. Returns: the mean distance that remains, HUGE_VAL without a map. */
-static double search(const Work *w, Map *map, GArray *points)
+static double search(const Work *w, FlAffineMotion *map, GArray *points)
 {
     double step = HUGE_VAL;
     for (int k = 0; k < MOST_STEPS && step > CONVERGED_PX; k++)
@@ -176,7 +158,8 @@ static double search(const Work *w, Map *map, GArray *points)
 }
 
 /** Fixes what is left of the normal motion on the contour, and diffuses it over the part. */
-static bool fill_part(const Work *w, int part, const Map *map, const GArray *points, GError **error)
+static bool fill_part(const Work *w, int part, const FlAffineMotion *map, const GArray *points,
+                      GError **error)
 {
     const FlRect box = w->part_box[part];
     const size_t n = fl_rect_pixels(box);
@@ -191,8 +174,8 @@ static bool fill_part(const Work *w, int part, const Map *map, const GArray *poi
     }
     for (guint i = 0; i < points->len; i++) {
         const Point *q = &g_array_index(points, Point, i);
-        double u[2], mode[FL_MODES][2], g[2];
-        move(map, q->x, q->y, u, mode);
+        double u[2], g[2];
+        fl_affine_motion_at(map, q->x, q->y, u);
         const double d = sample(w, q->x - u[0], q->y - u[1], g);
         if (g[0] * q->nx + g[1] * q->ny < 0) // faces the other way: no measure of motion
             continue;
@@ -206,8 +189,8 @@ static bool fill_part(const Work *w, int part, const Map *map, const GArray *poi
         const int x = box.x + (int)(p % box.width), y = box.y + (int)(p / box.width);
         if (part_at(w, x, y) != part)
             continue;
-        double u[2], mode[FL_MODES][2];
-        move(map, x, y, u, mode);
+        double u[2];
+        fl_affine_motion_at(map, x, y, u);
         float *out = w->motion + 2 * ((size_t)y * w->width + x);
         out[0] = (float)u[0] + rest[2 * p], out[1] = (float)u[1] + rest[2 * p + 1];
     }
@@ -250,9 +233,9 @@ static bool fill_flow(Work *w, int part, GError **error)
 }
 
 /** A part that has come as its centre has. */
-static Map start_of(const Work *w, int part, const GArray *points)
+static FlAffineMotion start_of(const Work *w, int part, const GArray *points)
 {
-    Map map = map_of(points);
+    FlAffineMotion map = map_of(points);
     map.p[0] = (double)w->trace[part].offset[0], map.p[1] = (double)w->trace[part].offset[1];
     return map;
 }
@@ -261,7 +244,7 @@ static Map start_of(const Work *w, int part, const GArray *points)
  * looks like any other, so that its motion is unknown. */
 static bool register_jump(const Work *w, int part, GArray *points, GError **error)
 {
-    Map map = start_of(w, part, points);
+    FlAffineMotion map = start_of(w, part, points);
     if (points->len >= LEAST_POINTS && search(w, &map, points) <= ALIKE * map.size)
         return fill_part(w, part, &map, points, error);
     leave_unknown(w, part);
@@ -278,11 +261,11 @@ static bool register_part(Work *w, int part, GArray *points, GError **error)
     }
     if (points->len < LEAST_POINTS)
         return fill_flow(w, part, error);
-    Map map = map_of(points);
+    FlAffineMotion map = map_of(points);
     const double start = measure(w, &map, points);
     if (start < NOISE_PX)
         return true;
-    Map far = start_of(w, part, points);
+    FlAffineMotion far = start_of(w, part, points);
     double left = search(w, &map, points);
     if (far.p[0] != 0 || far.p[1] != 0) {
         const double other = search(w, &far, points);
