@@ -1,6 +1,5 @@
 /*
- * Every version of every kernel and of every loop over rows against C: exact equality on noise and
- * on overflow bait.
+ * Every version of every kernel against C: exact equality on noise and on overflow bait.
  *
  * With --time as the only argument, no test: prints nanoseconds per call on data that is in the
  * cache, which the search's is not; bench tells what a version is worth there.
@@ -334,9 +333,6 @@ static void splines_are_sampled_as_in_c(const void *version)
     }
 }
 
-enum { ROW = 200 }; // the longest row
-
-/* Matches of any angle and frame, in an exemplar of any size. */
 /* A patch of each, and what is around the target's; the weights of edge and past at their most. */
 static void make_fluids(FlFluidTexel *source, FlFluidTexel *target, int n_target, FlRng *rng,
                         bool extreme)
@@ -373,161 +369,6 @@ static void fluids_are_compared_as_in_c(const void *version)
         g_assert_cmpuint(kernels->fluid_distance(source, target, 8, want), ==, want);
         g_assert_cmpuint(kernels->fluid_distance(source, target, 8, want / 2), >, want / 2);
     }
-}
-
-enum { PIECES = 50 }; // of a contour
-
-/* Rows of noise, each from any address on, and what follows what is written. */
-typedef struct Noise {
-    float f[8][2 * ROW + 16];
-    int16_t s[3][ROW + 16];
-    int32_t seed[ROW + 16];
-    uint32_t pixel[ROW + 16];
-    uint8_t rgba[4 * ROW + 16];
-    uint32_t sum[4][ROW + 16];
-    uint16_t above[ROW + 16];
-    uint8_t area[ROW + 16];
-    FlContourPiece piece[PIECES];
-    FlContourLinks links[PIECES];
-    int32_t nearest[ROW + 16]; // a piece
-} Noise;
-
-/* Pieces of a contour in any order, linked at random; one in eight is a disc. */
-static void make_contour(Noise *noise, FlRng *rng)
-{
-    for (int k = 0; k < PIECES; k++) {
-        const float angle = (float)fl_rng_below(rng, 628) / 100, is_line = fl_rng_below(rng, 8) > 0;
-        noise->piece[k] = (FlContourPiece){
-            (float)fl_rng_below(rng, 1000 * ROW) / 1000, (float)fl_rng_below(rng, 20000) / 1000,
-            is_line * cosf(angle), is_line * sinf(angle), (float)fl_rng_below(rng, 700) / 1000};
-    }
-    for (int k = 0; k < PIECES; k++) {
-        noise->links[k].has_discs = false;
-        for (int link = 0; link < FL_LINKS; link++) {
-            const int32_t to = (int32_t)fl_rng_below(rng, PIECES);
-            FlContourLinks *links = &noise->links[k];
-            links->x[link] = noise->piece[to].x, links->y[link] = noise->piece[to].y;
-            links->nx[link] = noise->piece[to].nx, links->ny[link] = noise->piece[to].ny;
-            links->half[link] = noise->piece[to].half, links->piece[link] = to;
-            links->has_discs |= noise->piece[to].nx == 0 && noise->piece[to].ny == 0;
-        }
-    }
-    for (int i = 0; i < ROW + 16; i++)
-        noise->nearest[i] = (int32_t)fl_rng_below(rng, PIECES);
-}
-
-static void make_noise(Noise *noise, uint64_t seed)
-{
-    FlRng rng = {seed};
-    const bool extreme = seed % 4 == 0;
-    uint8_t *bytes = (uint8_t *)noise;
-    for (size_t k = 0; k < sizeof *noise; k++)
-        bytes[k] = extreme ? 255 : (uint8_t)fl_rng_u32(&rng);
-    for (int k = 0; k < 8; k++)
-        for (int i = 0; i < 2 * ROW + 16; i++) // some weights are 0
-            noise->f[k][i] = (float)MAX((int)fl_rng_below(&rng, 5000) - 1000, 0) / 64;
-    for (int i = 0; i < ROW + 16; i++) {
-        noise->s[0][i] = (int16_t)(fl_rng_below(&rng, 55) - 5);
-        for (int c = 0; c < 4; c++)
-            noise->sum[c][i] = extreme ? 65535 * 255 : fl_rng_below(&rng, 65535 * 255 + 1);
-    }
-    make_contour(noise, &rng);
-}
-
-static FlContourRow contour_of(Noise *z, int at)
-{
-    return (FlContourRow){.piece = z->piece,
-                          .links = z->links,
-                          .above = z->nearest,
-                          .own = z->nearest + at,
-                          .below = z->nearest + 16,
-                          .y = at,
-                          .near_px = 12};
-}
-
-/* Runs every loop of a version over rows of n, `at` bytes or elements from an aligned address. */
-static void run_rows(const FlRowKernels *rows, Noise *z, int n, int at)
-{
-    const FlSums sums = {{z->sum[0] + at, z->sum[1] + at, z->sum[2] + at}, z->sum[3] + at};
-    rows->add_pair(z->f[0] + at, z->f[1] + at, z->f[2], 0.37f, n);
-    rows->halve(z->f[1] + at, z->f[2], z->f[3] + at, n);
-    rows->halve_weighted(z->f[4] + at, z->f[5], z->f[1], z->f[2] + at, z->f[7] + at, n);
-    rows->near_above(z->seed + at, n % 2 ? z->s[0] : NULL, 7, z->s[1] + at, n);
-    rows->near_below(z->s[0], 9, z->s[1] + at, n);
-    const FlContourRow contour = contour_of(z, at);
-    rows->to_contour(&contour, z->f[3] + ROW + at, n);
-    rows->over(z->pixel + at, &sums, n);
-    rows->level_opaque(&sums, z->pixel + at, n);
-    const FlOcclusion layer = {z->rgba + at, z->rgba + ROW, n % 2 ? z->rgba + 3 : NULL, n,
-                               n % 5 > 0};
-    rows->occlude(&layer, z->sum[2] + at, z->above + at, z->area + at, n);
-    rows->multiply(z->above + at, z->rgba + at, n);
-}
-
-static void rows_are_those_of_c(const void *version)
-{
-    const FlRowKernels *rows = version;
-    g_autofree Noise *want = g_new(Noise, 1), *got = g_new(Noise, 1);
-    for (uint64_t seed = 1; seed <= 1500; seed++) {
-        FlRng rng = {seed};
-        const int n = (int)fl_rng_below(&rng, seed % 3 ? 40 : ROW), at = (int)(seed % 9);
-        make_noise(want, seed);
-        memcpy(got, want, sizeof *got);
-        run_rows(&fl_row_kernels_c, want, n, at);
-        run_rows(rows, got, n, at);
-        if (memcmp(got, want, sizeof *got) != 0)
-            g_test_message("%s, seed %" G_GUINT64_FORMAT, rows->name, seed);
-        g_assert_cmpmem(got, sizeof *got, want, sizeof *want);
-    }
-}
-
-/* Paint of every alpha over opaque sums of every level: nothing overflows, nothing is lost. */
-static void opaque_rows_stay_opaque(const void *version)
-{
-    const FlRowKernels *rows = version;
-    uint32_t sum[4][256];
-    uint32_t rgba[256], out[256];
-    const FlSums sums = {{sum[0], sum[1], sum[2]}, sum[3]};
-    for (int below = 0; below < 256; below += 5)
-        for (int alpha = 0; alpha < 256; alpha++) {
-            for (int s = 0; s < 256; s++) {
-                sum[0][s] = sum[1][s] = sum[2][s] = 65535u * (uint32_t)below;
-                sum[3][s] = 65535 * 255;
-                memcpy(&rgba[s], (uint8_t[]){(uint8_t)s, (uint8_t)s, (uint8_t)s, (uint8_t)alpha},
-                       4);
-            }
-            rows->over(rgba, &sums, 256);
-            rows->level_opaque(&sums, out, 256);
-            for (int s = 0; s < 256; s++) {
-                const double exact = (s * alpha + below * (255 - alpha)) / 255.0;
-                g_assert_cmpuint(sum[3][s], ==, 65535 * 255);
-                g_assert_cmpfloat(ABS(((const uint8_t *)&out[s])[0] - exact), <=, 0.51);
-            }
-        }
-}
-
-/* The quotient in whole numbers, for every alpha of paint, share and what is above. */
-static void a_layer_shows_its_share(const void *version)
-{
-    const FlRowKernels *rows = version;
-    for (int above = 0; above < 65536; above += above < 65000 ? 97 : 1)
-        for (int seen = 0; seen < 256; seen += 5) {
-            const uint32_t left = 65535 - (uint32_t)above;
-            uint32_t rgba[256];
-            uint16_t taken[256];
-            uint8_t covered[256], of_it[256];
-            for (int paint = 0; paint < 256; paint++)
-                rgba[paint] = GUINT32_TO_LE((uint32_t)paint << 24), taken[paint] = (uint16_t)above;
-            memset(covered, 255, sizeof covered);
-            memset(of_it, seen, sizeof of_it);
-            const FlOcclusion layer = {covered, of_it, NULL, 255, false};
-            rows->occlude(&layer, rgba, taken, NULL, 256);
-            for (uint32_t paint = 0; paint < 256; paint++) {
-                const uint32_t share = paint * (uint32_t)seen * 257;
-                const uint32_t want = left < 257 ? paint : MIN((share + left / 2) / left, 255);
-                g_assert_cmpuint(GUINT32_FROM_LE(rgba[paint]) >> 24, ==, want);
-            }
-        }
 }
 
 #define CALLS 200000
@@ -585,26 +426,6 @@ static void time_version(const FlKernels *kernels)
                                                  fl_spline_phases[k % 16].y, value));
 }
 
-static void time_rows(const FlRowKernels *rows)
-{
-    static Noise z;
-    make_noise(&z, 1);
-    const FlSums sums = {{z.sum[0], z.sum[1], z.sum[2]}, z.sum[3]};
-    printf("%s, rows of %d\n", rows->name, ROW);
-    TIME("add_pair", rows->add_pair(z.f[0], z.f[1], z.f[2], 0.37f, ROW));
-    TIME("halve", rows->halve(z.f[1], z.f[2], z.f[3], ROW));
-    TIME("halve_weighted", rows->halve_weighted(z.f[4], z.f[5], z.f[1], z.f[2], z.f[7], ROW));
-    TIME("near_above", rows->near_above(z.seed, z.s[0], 7, z.s[1], ROW));
-    TIME("near_below", rows->near_below(z.s[0], 9, z.s[1], ROW));
-    const FlContourRow contour = contour_of(&z, 0);
-    TIME("to_contour", rows->to_contour(&contour, z.f[3], ROW));
-    TIME("over", rows->over(z.pixel, &sums, ROW));
-    TIME("level_opaque", rows->level_opaque(&sums, z.pixel, ROW));
-    const FlOcclusion layer = {z.rgba, z.rgba + ROW, z.rgba + 2 * ROW, 200, true};
-    TIME("occlude", rows->occlude(&layer, z.sum[2], z.above, z.area, ROW));
-    TIME("multiply", rows->multiply(z.above, z.rgba, ROW));
-}
-
 /** A check of one version; the argument is its FlKernels. */
 typedef struct Check {
     const char *name;
@@ -634,22 +455,10 @@ static void add_checks(const FlKernels *version)
     }
 }
 
-static void add_row_checks(const FlRowKernels *version)
-{
-    const char *level = version->name;
-    g_autofree char *same = g_strdup_printf("/rows/%s/rows-are-those-of-c", level);
-    g_autofree char *shares = g_strdup_printf("/rows/%s/a-layer-shows-its-share", level);
-    g_autofree char *opaque = g_strdup_printf("/rows/%s/opaque-rows-stay-opaque", level);
-    g_test_add_data_func(same, version, rows_are_those_of_c);
-    g_test_add_data_func(opaque, version, opaque_rows_stay_opaque);
-    g_test_add_data_func(shares, version, a_layer_shows_its_share);
-}
-
 int main(int argc, char **argv)
 {
     const bool time = argc == 2 && g_str_equal(argv[1], "--time");
     FlKernels versions[G_N_ELEMENTS(levels)];
-    const FlRowKernels *rows = NULL;
     const char *search = NULL;
     fl_rotation_init();
     fl_spline_init();
@@ -657,12 +466,10 @@ int main(int argc, char **argv)
     for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
         if (!available(levels[v]))
             continue;
-        // some levels have kernels for rows only, or none in this build
+        // some levels have no kernels, or none in this build
         fl_kernels_init(&versions[v], levels[v]);
         if (g_strcmp0(versions[v].name, search) != 0)
             time ? time_version(&versions[v]) : add_checks(&versions[v]);
-        if (fl_row_kernels_for(levels[v]) != rows)
-            rows = fl_row_kernels_for(levels[v]), time ? time_rows(rows) : add_row_checks(rows);
         search = versions[v].name;
     }
     return time ? 0 : g_test_run();

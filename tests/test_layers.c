@@ -289,6 +289,30 @@ static void stored_layers_recompose_to_the_frame_bit_for_bit(void)
     }
 }
 
+/* The quotient in whole numbers, for every alpha of paint, share and what is above. */
+static void a_layer_shows_its_share(void)
+{
+    static uint8_t coverage[256], rgba[4 * 256];
+    FlLayer layer = {.area.box = {0, 0, 256, 1}, .coverage = coverage, .rgba = rgba, .alpha = 255};
+    g_auto(FlLayersAbove) over = {0};
+    memset(coverage, 255, sizeof coverage);
+    layer.stacking = FL_STACKING_GLAZE; // nothing is added to what is above
+    g_assert_true(fl_layers_above_init(&over, 256, 1, &plain, NULL));
+    for (uint32_t above = 0; above < 65536; above += above < 65000 ? 97 : 1)
+        for (uint32_t hidden = 0; hidden < 256; hidden += 5) {
+            const uint32_t left = 65535 - above;
+            memset(over.area, (int)hidden, 256);
+            for (uint32_t paint = 0; paint < 256; paint++)
+                rgba[4 * paint + 3] = (uint8_t)paint, over.paint[paint] = (uint16_t)above;
+            fl_layer_occlude(&layer, &over);
+            for (uint32_t paint = 0; paint < 256; paint++) {
+                const uint32_t share = paint * over.seen[paint] * 257;
+                const uint32_t want = left < 257 ? paint : MIN((share + left / 2) / left, 255);
+                g_assert_cmpuint(rgba[4 * paint + 3], ==, want);
+            }
+        }
+}
+
 /** Knocks out all the way down; the same for the same key. */
 static void random_stack(FlLayer *layers, uint8_t (*coverage)[N], int n, uint64_t key)
 {
@@ -461,6 +485,7 @@ int main(int argc, char **argv)
                     thin_paint_hides_what_is_below_amid_its_shape_not_in_its_rim);
     g_test_add_func("/layers/stored-layers-recompose-to-the-frame-bit-for-bit",
                     stored_layers_recompose_to_the_frame_bit_for_bit);
+    g_test_add_func("/layers/a-layer-shows-its-share", a_layer_shows_its_share);
     g_test_add_func("/layers/sixteen-bits-are-the-same-picture", sixteen_bits_are_the_same_picture);
     g_test_add_func("/layers/layers-packed-in-turn-are-the-same-picture",
                     layers_packed_in_turn_are_the_same_picture);

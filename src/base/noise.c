@@ -1,8 +1,8 @@
 #include "base/noise.h"
 
+#include "base/cpu.h"
 #include "base/curves.h"
 #include "base/rng.h"
-#include "base/row_kernels.h"
 #include <math.h>
 #include <stddef.h>
 #include <string.h>

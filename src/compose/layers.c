@@ -1,6 +1,5 @@
 #include "compose/layers.h"
 #include "base/alloc.h"
-#include "base/row_kernels.h"
 #include "base/schedule.h"
 #include "compose/layer_blend.h"
 #include "compose/visibility.h"
@@ -116,6 +115,21 @@ static void yield_columns(const FlLayer *layer, const FlLayersAbove *above, int 
     }
 }
 
+/**
+ * The stored alpha of paint of alpha `paint`, of which `seen` of 255 is visible in the pixel. Its
+ * share of the final pixel is paint * seen; `over` leaves it 1 - above of its stored alpha. Float
+ * division suffices: both sides are below 2^24, and quotients of 256 and more do not matter.
+ */
+static int stored_alpha(int paint, int seen, int covered, int above)
+{
+    const int left = 65535 - above, share = paint * seen * 257 + left / 2;
+    if (left < 257) // hidden: the whole shape, for those who move layers apart in a compositor
+        return scaled(paint, covered);
+    return (int)MIN((float)share / (float)left, 255);
+}
+
+/** Sets the stored alpha of a layer's columns, and adds their paint and their knock-out to what is
+ * above the next layers. */
 static void resolve_columns(const FlLayer *layer, const FlLayersAbove *above, int y,
                             FlColumns columns)
 {
@@ -124,15 +138,20 @@ static void resolve_columns(const FlLayer *layer, const FlLayersAbove *above, in
     if (layer->yields)
         yield_columns(layer, above, y, columns);
     const FlRect box = layer->area.box;
-    const size_t i = (size_t)(box.y + y) * (size_t)above->width + (size_t)(box.x + columns.first);
-    const size_t j = (size_t)y * (size_t)box.width + (size_t)columns.first;
-    const FlOcclusion some = {.coverage = layer->coverage + j,
-                              .seen = above->seen + j,
-                              .knockout = layer->knockout ? layer->knockout + j : NULL,
-                              .alpha = layer->alpha,
-                              .knocks = fl_layer_knocks_out(layer)};
-    fl_row_kernels()->occlude(&some, (uint32_t *)(void *)layer->rgba + j, above->paint + i,
-                              above->area + i, columns.last - columns.first);
+    const size_t row = (size_t)(box.y + y) * (size_t)above->width + (size_t)box.x;
+    const bool knocks = fl_layer_knocks_out(layer);
+    for (int x = columns.first; x < columns.last; x++) {
+        const size_t p = (size_t)y * (size_t)box.width + (size_t)x, i = row + (size_t)x;
+        const int covered = layer->coverage[p], seen = above->seen[p];
+        const int paint = scaled(layer->rgba[4 * p + 3], layer->alpha);
+        const int alpha = covered ? stored_alpha(paint, seen, covered, above->paint[i]) : 0;
+        layer->rgba[4 * p + 3] = (uint8_t)alpha;
+        if (!knocks)
+            continue;
+        const int knockout = layer->knockout ? layer->knockout[p] : 255;
+        above->paint[i] = (uint16_t)(above->paint[i] + (65535 - above->paint[i]) * alpha / 255);
+        above->area[i] = (uint8_t)(above->area[i] + scaled(seen, scaled(knockout, layer->alpha)));
+    }
 }
 
 static void grow_area(const FlLayer *layer, FlLayersAbove *above)
@@ -164,29 +183,31 @@ typedef struct Sum {
     uint32_t x[3], a;
 } Sum;
 
+/** A row of them, in planes. */
+typedef struct Sums {
+    uint32_t *x[3], *a;
+} Sums;
+
 static uint32_t over(uint32_t sum, uint32_t value, uint32_t alpha)
 {
     return value * alpha + (sum * (255 - alpha) + 127) / 255; // below 2^32, as 65535 * 255^2 is
 }
 
 /** A row of sums in 4 * width values. */
-static FlSums sums_in(uint32_t *values, int width)
+static Sums sums_in(uint32_t *values, int width)
 {
-    return (FlSums){{values, values + width, values + 2 * (size_t)width},
-                    values + 3 * (size_t)width};
+    return (Sums){{values, values + width, values + 2 * (size_t)width}, values + 3 * (size_t)width};
 }
 
 /** A row of sums from column `first` on. */
-static FlSums sums_from(const FlSums *sums, int first)
+static Sums sums_from(const Sums *sums, int first)
 {
-    return (FlSums){{sums->x[0] + first, sums->x[1] + first, sums->x[2] + first}, sums->a + first};
+    return (Sums){{sums->x[0] + first, sums->x[1] + first, sums->x[2] + first}, sums->a + first};
 }
 
-static void sum_over(const FlSums *sums, const FlTransfer *scale, const uint8_t *rgba, int n)
+static void sum_over(const Sums *sums, const FlTransfer *scale, const uint8_t *rgba, int n)
 {
-    if (!scale->linear)
-        fl_row_kernels()->over((const uint32_t *)(const void *)rgba, sums, n);
-    for (int i = 0; scale->linear && i < n; i++) {
+    for (int i = 0; i < n; i++) {
         const uint32_t alpha = rgba[4 * i + 3];
         for (int c = 0; c < 3; c++)
             sums->x[c][i] = over(sums->x[c][i], (uint32_t)scale->value[rgba[4 * i + c]], alpha);
@@ -196,7 +217,7 @@ static void sum_over(const FlSums *sums, const FlTransfer *scale, const uint8_t 
 
 #define OPAQUE (65535 * 255) // the alpha of a sum through which no lower layer shows
 
-static Sum sum_at(const FlSums *sums, int i)
+static Sum sum_at(const Sums *sums, int i)
 {
     return (Sum){{sums->x[0][i], sums->x[1][i], sums->x[2][i]}, sums->a[i]};
 }
@@ -212,18 +233,17 @@ static int32_t sum_value(const Sum *sum, int channel)
 
 /** Blends row y of a packed layer whose box begins at column x. */
 static void sum_runs(const FlPixelRuns *runs, const FlTransfer *scale, int y, int x,
-                     const FlSums *sums)
+                     const Sums *sums)
 {
     for (size_t r = runs->first[y]; r < runs->first[y + 1]; r++) {
         const FlPixelRun *run = &runs->run[r];
-        const FlSums below = sums_from(sums, x + run->columns.first);
+        const Sums below = sums_from(sums, x + run->columns.first);
         sum_over(&below, scale, runs->rgba + 4 * run->at, run->columns.last - run->columns.first);
     }
 }
 
 /** Blends the layers' pixels of row y over the sums of that row. */
-static void sum_row(const FlLayer *layers, int n, const FlTransfer *scale, int y,
-                    const FlSums *sums)
+static void sum_row(const FlLayer *layers, int n, const FlTransfer *scale, int y, const Sums *sums)
 {
     for (int k = 0; k < n; k++) {
         const FlRect box = layers[k].area.box;
@@ -235,13 +255,13 @@ static void sum_row(const FlLayer *layers, int n, const FlTransfer *scale, int y
         }
         const uint8_t *row = layers[k].rgba + (size_t)(y - box.y) * box.width * 4;
         const FlColumns span = fl_area_row(&layers[k].area, y - box.y);
-        const FlSums below = sums_from(sums, box.x + span.first);
+        const Sums below = sums_from(sums, box.x + span.first);
         sum_over(&below, scale, row + 4 * span.first, span.last - span.first);
     }
 }
 
 static void sum_backdrop(const FlBackdrop *backdrop, const FlTransfer *scale, int y, int width,
-                         const FlSums *sums)
+                         const Sums *sums)
 {
     uint32_t *const planes[4] = {sums->x[0], sums->x[1], sums->x[2], sums->a};
     const int n = backdrop->rgba ? width : 1; // of a flat one the first pixel, and then copies
@@ -284,7 +304,7 @@ static void blend_pixel(const Sum *below, int drawn, const FlTransfer *scale,
 
 /** A row of the stack, from the paper up to the layer at hand. */
 typedef struct Row {
-    FlSums sums;
+    Sums sums;
     uint8_t *drawn; // the share of each pixel that the shapes below cover, 0..255
 } Row;
 
@@ -345,20 +365,8 @@ bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlSt
     return true;
 }
 
-static bool is_opaque(const FlSums *sums, int width)
+static void store_row(const Sums *sums, const FlTransfer *scale, int width, uint8_t *out)
 {
-    uint32_t other = 0;
-    for (int x = 0; x < width; x++)
-        other |= sums->a[x] ^ OPAQUE;
-    return other == 0;
-}
-
-static void store_row(const FlSums *sums, const FlTransfer *scale, int width, uint8_t *out)
-{
-    if (!scale->linear && is_opaque(sums, width)) {
-        fl_row_kernels()->level_opaque(sums, (uint32_t *)(void *)out, width);
-        return;
-    }
     for (int x = 0; x < width; x++) {
         const Sum sum = sum_at(sums, x);
         for (int c = 0; c < 3; c++)
@@ -367,7 +375,7 @@ static void store_row(const FlSums *sums, const FlTransfer *scale, int width, ui
     }
 }
 
-static void store_row16(const FlSums *sums, const FlTransfer *scale, int width, uint16_t *out)
+static void store_row16(const Sums *sums, const FlTransfer *scale, int width, uint16_t *out)
 {
     for (int x = 0; x < width; x++) {
         const Sum sum = sum_at(sums, x);
@@ -385,7 +393,7 @@ static void compose(const FlLayer *layers, int n, const FlBackdrop *backdrop, in
 #pragma omp parallel
     {
         g_autofree uint32_t *values = g_new(uint32_t, 4 * (size_t)width);
-        const FlSums sums = sums_in(values, width);
+        const Sums sums = sums_in(values, width);
 #pragma omp for schedule(static)
         for (int y = 0; y < height; y++) {
             sum_backdrop(backdrop, &scale, y, width, &sums);

@@ -6,7 +6,6 @@
 #include "base/noise.h"
 #include "base/page.h"
 #include "base/rng.h"
-#include "base/row_kernels.h"
 #include "guides/blur.h"
 #include "io/picture_file.h"
 #include "io/sink.h"
@@ -387,6 +386,14 @@ void fl_paper_sheet_origin(const FlPaperSheet *sheet, int frame, int *x, int *y)
     *y = sheet->boil > 0 ? 2 * (int)fl_rng_below(&rng, ROOM_PX / 2) : 0;
 }
 
+static void light_row8(const uint16_t *factor, uint8_t *restrict rgba, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const uint32_t value = ((uint32_t)rgba[i] * factor[i] + FL_PAPER_ONE / 2) / FL_PAPER_ONE;
+        rgba[i] = (uint8_t)MIN(value, 255);
+    }
+}
+
 static void light_row16(const uint16_t *factor, uint16_t *rgba, int n)
 {
     for (int i = 0; i < n; i++)
@@ -408,7 +415,7 @@ static void light_row(const Lit *lit, int row, const uint16_t *factor)
     const size_t at = 4 * (size_t)(row - lit->y) * (size_t)lit->width;
     factor += 4 * (size_t)lit->x;
     if (lit->rgba)
-        fl_row_kernels()->multiply(factor, lit->rgba + at, 4 * lit->width);
+        light_row8(factor, lit->rgba + at, 4 * lit->width);
     if (lit->rgba16)
         light_row16(factor, lit->rgba16 + at, 4 * lit->width);
 }

@@ -1,6 +1,6 @@
 /* The part of a wash that follows from its shapes: masks, light and shadow, pools. */
 #include "base/alloc.h"
-#include "base/row_kernels.h"
+#include "base/cpu.h"
 #include "compose/wash_field.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "guides/blur.h"
 
 #include "base/alloc.h"
-#include "base/row_kernels.h"
+#include "base/cpu.h"
 #include "guides/gauss.h"
 
 static void divide(float *row, int width, float sum)
@@ -9,6 +9,18 @@ static void divide(float *row, int width, float sum)
     for (int x = 0; x < width && sum != 1; x++)
         row[x] /= sum;
 }
+
+/** to[i] += weight * (a[i] + b[i]); a and b may be the same. */
+static inline void add_row_pair(float *restrict to, const float *a, const float *b, float weight,
+                                int n)
+{
+    for (int i = 0; i < n; i++)
+        to[i] += weight * (a[i] + b[i]);
+}
+
+FL_FOR_EACH_CPU(add_pair, add_row_pair,
+                (float *to, const float *a, const float *b, float weight, int n),
+                (to, a, b, weight, n))
 
 /** Blurs a row along x, through a copy with its ends repeated: width + 2 * radius. */
 static void blur_row(const float *row, int width, const FlBlurKernel *kernel, float *padded,
@@ -21,7 +33,7 @@ static void blur_row(const float *row, int width, const FlBlurKernel *kernel, fl
     for (int x = 0; x < width; x++)
         out[x] = kernel->weight[0] * middle[x];
     for (int k = 1; k <= radius; k++)
-        fl_row_kernels()->add_pair(out, middle - k, middle + k, kernel->weight[k], width);
+        add_pair(out, middle - k, middle + k, kernel->weight[k], width);
     divide(out, width, kernel->sum);
 }
 
@@ -33,9 +45,8 @@ static void blur_columns(const float *rows, int width, int height, int y,
     for (int x = 0; x < width; x++)
         out[x] = kernel->weight[0] * middle[x];
     for (int k = 1; k <= kernel->radius; k++)
-        fl_row_kernels()->add_pair(out, rows + MAX(y - k, 0) * (size_t)width,
-                                   rows + MIN(y + k, height - 1) * (size_t)width, kernel->weight[k],
-                                   width);
+        add_pair(out, rows + MAX(y - k, 0) * (size_t)width,
+                 rows + MIN(y + k, height - 1) * (size_t)width, kernel->weight[k], width);
     divide(out, width, kernel->sum);
 }
 

@@ -8,8 +8,8 @@
 #include "guides/distance.h"
 
 #include "base/alloc.h"
+#include "base/cpu.h"
 #include "base/rect.h"
-#include "base/row_kernels.h"
 #include <math.h>
 #include <string.h>
 
@@ -188,12 +188,18 @@ static void search_columns(Work *work)
     const int w = work->width, h = work->height;
     for (int y = 0; y < h; y++) {
         int16_t *near_y = work->near_y + y * (size_t)w;
-        fl_row_kernels()->near_above(work->seed_at + y * (size_t)w, y > 0 ? near_y - w : NULL, y,
-                                     near_y, w);
+        for (int x = 0; x < w; x++)
+            near_y[x] = work->seed_at[y * (size_t)w + x] >= 0 ? (int16_t)y
+                        : y > 0                               ? near_y[x - w]
+                                                              : -1;
     }
     for (int y = h - 2; y >= 0; y--) {
         int16_t *near_y = work->near_y + y * (size_t)w;
-        fl_row_kernels()->near_below(near_y + w, y, near_y, w);
+        for (int x = 0; x < w; x++) {
+            const int below = near_y[x + w], above = near_y[x];
+            if (below > y && (above < 0 || below - y < y - above))
+                near_y[x] = (int16_t)below;
+        }
     }
 }
 
@@ -244,7 +250,6 @@ static void set_link(FlContourLinks *links, int k, const FlContourPiece *piece, 
     links->x[k] = piece->x, links->y[k] = piece->y;
     links->nx[k] = piece->nx, links->ny[k] = piece->ny;
     links->half[k] = piece->half, links->piece[k] = index;
-    links->has_discs |= piece->nx == 0 && piece->ny == 0;
 }
 
 static void link_seed(const Work *work, int32_t seed)
@@ -254,7 +259,6 @@ static void link_seed(const Work *work, int32_t seed)
     const int w = work->width, h = work->height, x = pixel % w, y = pixel / w;
     FlContourLinks *links = &work->contour->links[seed];
     int n = 0;
-    links->has_discs = false;
     for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, h - 1); ny++)
         for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, w - 1); nx++) {
             const int32_t other = work->seed_at[ny * (size_t)w + nx];
@@ -279,6 +283,80 @@ static bool link_seeds(Work *work, GError **error)
     return contour->links;
 }
 
+/** A contour, and for rows y - 1, y and y + 1 the index of a piece near each pixel. */
+typedef struct Row {
+    const FlContourPiece *piece;
+    const FlContourLinks *links; // of each piece
+    const int32_t *above, *own, *below;
+    int y;
+} Row;
+
+/* From a piece to a point that lies (x, y) from its middle. */
+static inline float squared_distance(float x, float y, float nx, float ny, float half)
+{
+    const float across = x * nx + y * ny, beyond = fabsf(x * ny - y * nx) - half;
+    const float aside = beyond > 0 ? beyond : 0;
+    const float to_disc = sqrtf(x * x + y * y) - half;
+    const bool disc = (nx == 0) & (ny == 0);
+    return disc ? to_disc * to_disc : across * across + aside * aside;
+}
+
+static float to_piece(const FlContourPiece *piece, float x, float y)
+{
+    return squared_distance(x - piece->x, y - piece->y, piece->nx, piece->ny, piece->half);
+}
+
+/* The first of the nearest of some links, of which one is nearer than *best. */
+static inline int32_t nearest_of_links(const FlContourLinks *links, const float d[FL_LINKS],
+                                       float *best)
+{
+    int32_t first = -1;
+    for (int k = 0; k < FL_LINKS; k++)
+        if (d[k] < *best)
+            *best = d[k], first = links->piece[k];
+    return first;
+}
+
+/* The first of the nearest pieces around one, if any is nearer than *best; else -1. */
+static inline int32_t nearer_link(const FlContourLinks *links, float x, float y, float *best)
+{
+    float d[FL_LINKS];
+    int nearer = 0;
+#pragma GCC unroll 1 // unrolled it would not be vectorised
+    for (int k = 0; k < FL_LINKS; k++) {
+        d[k] = squared_distance(x - links->x[k], y - links->y[k], links->nx[k], links->ny[k],
+                                links->half[k]);
+        nearer |= d[k] < *best;
+    }
+    return nearer ? nearest_of_links(links, d, best) : -1;
+}
+
+/** Squared distances to the contour: from the best of a pixel's piece and those of its four
+ * neighbours along links, as long as it gets nearer. */
+static inline void measure_squares(const Row *row, float *restrict squared, int n)
+{
+    const float far = NEAR_PX * NEAR_PX, y = (float)row->y;
+    for (int i = 0; i < n; i++) {
+        const float x = (float)i;
+        int32_t nearest = row->own[i];
+        float best = to_piece(&row->piece[nearest], x, y);
+        const int32_t others[4] = {row->above[i], row->below[i], row->own[i > 0 ? i - 1 : i],
+                                   row->own[i < n - 1 ? i + 1 : i]};
+        for (int k = 0; k < 4 && best < far; k++) {
+            const float d =
+                others[k] != row->own[i] ? to_piece(&row->piece[others[k]], x, y) : best;
+            if (d < best)
+                best = d, nearest = others[k];
+        }
+        for (int32_t next = best < far ? nearest : -1; next >= 0;)
+            next = nearer_link(&row->links[next], x, y, &best);
+        squared[i] = best;
+    }
+}
+
+FL_FOR_EACH_CPU(find_squares, measure_squares, (const Row *row, float *squared, int n),
+                (row, squared, n))
+
 /**
  * Step 4 for one row. Far from the contour the first seed will do: its piece is at most 0.3 px
  * farther than the nearest.
@@ -288,14 +366,13 @@ static void measure_row(const Work *work, int y, float *distance)
     const int w = work->width;
     const int32_t *own = work->contour->nearest + y * (size_t)w;
     const uint8_t *mask = work->mask + y * (size_t)w;
-    const FlContourRow row = {.piece = work->contour->piece,
-                              .links = work->contour->links,
-                              .above = y > 0 ? own - w : own,
-                              .own = own,
-                              .below = y < work->height - 1 ? own + w : own,
-                              .y = y,
-                              .near_px = NEAR_PX};
-    fl_row_kernels()->to_contour(&row, distance, w);
+    const Row row = {.piece = work->contour->piece,
+                     .links = work->contour->links,
+                     .above = y > 0 ? own - w : own,
+                     .own = own,
+                     .below = y < work->height - 1 ? own + w : own,
+                     .y = y};
+    find_squares(&row, distance, w);
     for (int x = 0; x < w; x++) {
         const float d = sqrtf(distance[x]);
         distance[x] = mask[x] >= FL_INSIDE ? d : -d;

@@ -1,8 +1,9 @@
 /* Sub-pixel signed distance from antialiased coverage. */
 #pragma once
 
-#include "base/row_kernels.h"
 #include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
 
 #define FL_INSIDE 128
 
@@ -21,6 +22,21 @@
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */
 bool fl_distance(const uint8_t *mask, int width, int height, float *distance, GError **error);
+
+/** A piece of contour: its middle, its inward unit normal, half its length; px. */
+typedef struct FlContourPiece {
+    float x, y;
+    float nx, ny; // 0, 0: not a piece of line but a disc
+    float half;   // a disc's radius
+} FlContourPiece;
+
+enum { FL_LINKS = 8 }; // links of a piece to its neighbours
+
+/** The pieces around one, side by side; where there are fewer, the rest are that piece itself. */
+typedef struct FlContourLinks {
+    float x[FL_LINKS], y[FL_LINKS], nx[FL_LINKS], ny[FL_LINKS], half[FL_LINKS];
+    int32_t piece[FL_LINKS]; // their indices
+} FlContourLinks;
 
 /** A contour as one piece for each pixel beside it, on either side. */
 typedef struct FlContour {

@@ -1,7 +1,7 @@
 /* The inner loops of search and vote, once in C and once per instruction set. */
 #pragma once
 
-#include "base/row_kernels.h"
+#include "base/cpu.h"
 #include "synth/fluid_texel.h"
 #include "synth/rotation.h"
 #include "synth/spline.h"

@@ -1,7 +1,6 @@
 #include "synth/pyramid.h"
 
 #include "base/alloc.h"
-#include "base/row_kernels.h"
 #include "guides/direction.h"
 
 bool fl_pyramid_init(FlPyramid *pyramid, int width, int height, int n_planes, GError **error)
@@ -57,6 +56,26 @@ static bool counts_inside_only(FlPlane plane)
            plane == FL_PLANE_SIN;
 }
 
+/* Means of 2x2; upper and lower, which may be the same, are rows of 2 n values. */
+static void halve(const float *upper, const float *lower, float *restrict to, int n)
+{
+    for (int i = 0; i < n; i++)
+        to[i] = (upper[2 * i] + upper[2 * i + 1] + lower[2 * i] + lower[2 * i + 1]) * 0.25f;
+}
+
+/* Weighted means, weights >= 0; 0 where all four weights are 0. */
+static void halve_weighted(const float *upper, const float *lower, const float *upper_weight,
+                           const float *lower_weight, float *restrict to, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const int j = 2 * i, k = 2 * i + 1;
+        const float weight = upper_weight[j] + upper_weight[k] + lower_weight[j] + lower_weight[k];
+        const float sum = upper[j] * upper_weight[j] + upper[k] * upper_weight[k] +
+                          lower[j] * lower_weight[j] + lower[k] * lower_weight[k];
+        to[i] = sum / (weight + (float)(weight == 0));
+    }
+}
+
 /* A row of one plane, but for the last pixel of an odd width. */
 static void halve_row(const FlPyramid *fine, FlPyramid *coarse, int plane, int y)
 {
@@ -66,10 +85,10 @@ static void halve_row(const FlPyramid *fine, FlPyramid *coarse, int plane, int y
     const float *from = fine->plane[plane], *inside = fine->plane[FL_PLANE_INSIDE];
     float *to = coarse->plane[plane] + (size_t)y * coarse->width;
     if (counts_inside_only(plane))
-        fl_row_kernels()->halve_weighted(from + upper, from + lower, inside + upper, inside + lower,
-                                         to, fine->width / 2);
+        halve_weighted(from + upper, from + lower, inside + upper, inside + lower, to,
+                       fine->width / 2);
     else
-        fl_row_kernels()->halve(from + upper, from + lower, to, fine->width / 2);
+        halve(from + upper, from + lower, to, fine->width / 2);
 }
 
 /* At an odd border the last column, or row, counts twice. */
@@ -82,9 +101,9 @@ static void halve_last(const FlPyramid *fine, FlPyramid *coarse, int plane, int 
     const float weight[2][2] = {{in[upper], in[upper]}, {in[lower], in[lower]}};
     float *to = coarse->plane[plane] + (size_t)y * coarse->width + coarse->width - 1;
     if (counts_inside_only(plane))
-        fl_row_kernels()->halve_weighted(pair[0], pair[1], weight[0], weight[1], to, 1);
+        halve_weighted(pair[0], pair[1], weight[0], weight[1], to, 1);
     else
-        fl_row_kernels()->halve(pair[0], pair[1], to, 1);
+        halve(pair[0], pair[1], to, 1);
 }
 
 void fl_pyramid_halve(const FlPyramid *fine, FlPyramid *coarse)

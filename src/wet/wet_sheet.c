@@ -1,8 +1,8 @@
 #include "wet/wet_sheet.h"
 
 #include "base/alloc.h"
+#include "base/cpu.h"
 #include "base/curves.h"
-#include "base/row_kernels.h"
 #include <math.h>
 #include <string.h>
 
