@@ -41,21 +41,52 @@ static void patch_pair_c(const FlTexel *centre, const int16_t *offsets, const Fl
         distance[1] += term(centre - offsets[p], true, &target[p], rest);
 }
 
-void fl_draw_candidates_c(const FlSearchWindows *windows, const uint16_t centre[3], uint32_t key,
-                          FlCandidates *candidates)
+/* Loops go on to a multiple of 16, which compilers make of vectors alone; what lies beyond the
+ * windows does not count. */
+static int whole_vectors(int n)
 {
-    for (int k = 0; k < windows->n; k++) {
-        candidates->pixel[k] = 0;
-        for (int axis = 0; axis < 3; axis++) {
-            const int reach = windows->reach[axis][k], last = windows->size[axis] - 1;
-            const int low = MAX(centre[axis] - reach, 0), high = MIN(centre[axis] + reach, last);
-            const uint32_t place = (uint32_t)(axis * FL_MAX_CANDIDATES + k) / 2; // 16 bits for each
-            const uint32_t bits = fl_hash32(key + place * FL_HASH32_STEP) >> (k % 2 * 16) & 0xffff;
-            const uint32_t at = (uint32_t)low + (bits * (uint32_t)(high - low + 1) >> 16);
-            candidates->at[axis][k] = (uint16_t)at;
-            candidates->pixel[k] += at * windows->step[axis];
-        }
+    return (n + 15) & ~15;
+}
+
+/* Candidates along one axis. */
+static inline void draw_along(const FlSearchWindows *windows, const uint16_t centre[3],
+                              uint32_t key, int axis, FlCandidates *candidates)
+{
+    const int middle = centre[axis], last = windows->size[axis] - 1;
+    const int n = whole_vectors(windows->n);
+    uint16_t bits[FL_MAX_CANDIDATES];
+    for (int k = 0; k < n / 2; k++) {
+        const uint32_t place = (uint32_t)(axis * FL_MAX_CANDIDATES / 2 + k);
+        const uint32_t both = fl_hash32(key + place * FL_HASH32_STEP);
+        bits[2 * k] = (uint16_t)both, bits[2 * k + 1] = (uint16_t)(both >> 16);
     }
+    for (int k = 0; k < n; k++) {
+        const int reach = windows->reach[axis][k];
+        const int low = MAX(middle - reach, 0), high = MIN(middle + reach, last);
+        const uint32_t at = (uint32_t)low + (bits[k] * (uint32_t)(high - low + 1) >> 16);
+        candidates->at[axis][k] = (uint16_t)at;
+        candidates->pixel[k] += at * windows->step[axis];
+    }
+}
+
+static inline void draw(const FlSearchWindows *windows, const uint16_t centre[3], uint32_t key,
+                        FlCandidates *candidates)
+{
+    for (int k = 0; k < whole_vectors(windows->n); k++)
+        candidates->pixel[k] = 0;
+    for (int axis = 0; axis < 3; axis++)
+        draw_along(windows, centre, key, axis, candidates);
+}
+
+FL_FOR_EACH_CPU(draw_candidates, draw,
+                (const FlSearchWindows *windows, const uint16_t centre[3], uint32_t key,
+                 FlCandidates *candidates),
+                (windows, centre, key, candidates))
+
+void fl_draw_candidates(const FlSearchWindows *windows, const uint16_t centre[3], uint32_t key,
+                        FlCandidates *candidates)
+{
+    draw_candidates(windows, centre, key, candidates);
 }
 
 /* The share of a match's use that a cell so many cells away gets. */
@@ -64,32 +95,42 @@ static int share(int apart)
     return MAX(2 - abs(apart), 0);
 }
 
-static uint32_t uniformity_of(const FlCandidates *candidates, int k,
-                              const FlCandidateFilter *filter)
+/* The cells of candidates in the map, and of each the share of the pixel's own use. */
+static void find_cells(const FlCandidates *candidates, int n, const FlCandidateFilter *filter,
+                       uint32_t *restrict cells, int16_t *restrict own)
 {
-    uint32_t index = 0;
-    int own = 1;
-    for (int axis = 0; axis < 3; axis++) {
-        const uint32_t cell = (2u * candidates->at[axis][k] + 1) * filter->factor[axis] >> 16;
-        index += cell * filter->step[axis];
-        own *= share((int)cell - filter->own[axis]);
-    }
-    const int use = filter->use[index] - own;
-    return (uint32_t)MIN((float)MAX(use, 0) * filter->price, filter->most);
+    for (int k = 0; k < n; k++)
+        cells[k] = 0, own[k] = 1;
+    for (int axis = 0; axis < 3; axis++)
+        for (int k = 0; k < n; k++) {
+            const uint32_t cell = (2u * candidates->at[axis][k] + 1) * filter->factor[axis] >> 16;
+            cells[k] += cell * filter->step[axis];
+            own[k] = (int16_t)(own[k] * share((int)cell - filter->own[axis]));
+        }
 }
 
-uint64_t fl_filter_candidates_c(const FlCandidates *candidates, int n,
-                                const FlCandidateFilter *filter, uint32_t *uniformity)
+static bool is_among(const int16_t frames[4], int16_t frame)
+{
+    return (frame == frames[0]) | (frame == frames[1]) | (frame == frames[2]) |
+           (frame == frames[3]);
+}
+
+uint64_t fl_filter_candidates(const FlCandidates *candidates, int n,
+                              const FlCandidateFilter *filter, uint32_t *uniformity)
 {
     uint64_t passed = 0;
+    uint32_t cells[FL_MAX_CANDIDATES];
+    int16_t own[FL_MAX_CANDIDATES];
+    find_cells(candidates, whole_vectors(n), filter, cells, own);
     for (int k = 0; k < n; k++) {
-        const int16_t frame = (int16_t)candidates->at[2][k], *frames = filter->frames;
-        if (filter->first[candidates->pixel[k]].c[FL_CH_SEGMENT] != filter->segment)
-            continue;
-        uniformity[k] = uniformity_of(candidates, k, filter);
-        if (uniformity[k] < filter->limit || frame == frames[0] || frame == frames[1] ||
-            frame == frames[2] || frame == frames[3])
-            passed |= 1ull << k;
+        const int use = MAX(filter->use[cells[k]] - own[k], 0);
+        uniformity[k] = (uint32_t)(int32_t)MIN((float)use * filter->price, filter->most);
+    }
+    for (int k = 0; k < n; k++) {
+        const uint8_t segment = filter->first[candidates->pixel[k]].c[FL_CH_SEGMENT];
+        const bool good = (uniformity[k] < filter->limit) |
+                          is_among(filter->frames, (int16_t)candidates->at[2][k]);
+        passed |= (uint64_t)(good & (segment == filter->segment)) << k;
     }
     return passed;
 }
@@ -110,9 +151,9 @@ void fl_spline_sample_c(const FlSplinePixel *first, size_t pitch, const int16_t 
 
 void fl_kernels_init(FlKernels *kernels, unsigned flags)
 {
-    *kernels = (FlKernels){fl_patch_distance_c,    patch_pair_c,        fl_draw_candidates_c,
-                           fl_filter_candidates_c, fl_spline_sample_c,  fl_vote_c,
-                           fl_vote_doubled_c,      fl_fluid_distance_c, "c"};
+    *kernels = (FlKernels){
+        fl_patch_distance_c, patch_pair_c, fl_spline_sample_c, fl_vote_c, fl_vote_doubled_c,
+        fl_fluid_distance_c, "c"};
 #if HAVE_NEON
     if (flags & FL_CPU_NEON) {
         kernels->patch_distance = fl_patch_distance_neon;
@@ -121,9 +162,12 @@ void fl_kernels_init(FlKernels *kernels, unsigned flags)
 #endif
 #if HAVE_AVX2
     if (flags & FL_CPU_AVX2)
-        *kernels =
-            (FlKernels){fl_patch_distance_avx2,    fl_patch_pair_avx2,     fl_draw_candidates_avx2,
-                        fl_filter_candidates_avx2, fl_spline_sample_avx2,  fl_vote_avx2,
-                        fl_vote_doubled_avx2,      fl_fluid_distance_avx2, "avx2"};
+        *kernels = (FlKernels){fl_patch_distance_avx2,
+                               fl_patch_pair_avx2,
+                               fl_spline_sample_avx2,
+                               fl_vote_avx2,
+                               fl_vote_doubled_avx2,
+                               fl_fluid_distance_avx2,
+                               "avx2"};
 #endif
 }

@@ -79,8 +79,8 @@ typedef struct FlCandidates {
 } FlCandidates;
 
 /** Draws a try from each window around a centre (x, y, frame); the key decides. */
-typedef void (*FlDrawCandidates)(const FlSearchWindows *windows, const uint16_t centre[3],
-                                 uint32_t key, FlCandidates *candidates);
+void fl_draw_candidates(const FlSearchWindows *windows, const uint16_t centre[3], uint32_t key,
+                        FlCandidates *candidates);
 
 /** The tests that a try must pass before its patch is compared. */
 typedef struct FlCandidateFilter {
@@ -98,11 +98,11 @@ typedef struct FlCandidateFilter {
 /**
  * Filters the first n candidates. Returns: a bit for each that passes. uniformity: the terms of the
  * candidates that pass, the price times the use of their cell without the pixel's own use, which
- * the tent spreads over 27 cells. Places are below 32768. The candidates must come from the same
- * version, which draws a few more than n; others of the FL_MAX_CANDIDATES terms may be written.
+ * the tent spreads over 27 cells. Places are below 32768. fl_draw_candidates() must have drawn the
+ * candidates, and a few more than n.
  */
-typedef uint64_t (*FlFilterCandidates)(const FlCandidates *candidates, int n,
-                                       const FlCandidateFilter *filter, uint32_t *uniformity);
+uint64_t fl_filter_candidates(const FlCandidates *candidates, int n,
+                              const FlCandidateFilter *filter, uint32_t *uniformity);
 
 /**
  * The value of a spline between 4x4 coefficients, the first of which is given, with rows of `pitch`
@@ -191,8 +191,6 @@ typedef struct FlMatch {
 typedef struct FlKernels {
     FlPatchDistance patch_distance;
     FlPatchPair patch_pair;
-    FlDrawCandidates draw_candidates;
-    FlFilterCandidates filter_candidates;
     FlSplineSample spline_sample;
     FlVote vote;
     FlVoteDoubled vote_doubled;
@@ -215,16 +213,6 @@ uint32_t fl_patch_distance_neon(const FlTexel *centre, const int16_t *offsets, b
 
 void fl_patch_pair_avx2(const FlTexel *centre, const int16_t *offsets, const FlTargetTexel *target,
                         const FlTargetTexel *rest, uint32_t limit, uint32_t distance[2]);
-
-void fl_draw_candidates_c(const FlSearchWindows *windows, const uint16_t centre[3], uint32_t key,
-                          FlCandidates *candidates);
-void fl_draw_candidates_avx2(const FlSearchWindows *windows, const uint16_t centre[3], uint32_t key,
-                             FlCandidates *candidates);
-
-uint64_t fl_filter_candidates_c(const FlCandidates *candidates, int n,
-                                const FlCandidateFilter *filter, uint32_t *uniformity);
-uint64_t fl_filter_candidates_avx2(const FlCandidates *candidates, int n,
-                                   const FlCandidateFilter *filter, uint32_t *uniformity);
 
 void fl_spline_sample_c(const FlSplinePixel *first, size_t pitch, const int16_t *x, const float *y,
                         float value[4]);

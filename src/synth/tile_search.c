@@ -159,8 +159,7 @@ static void draw(PixelSearch *ps, const FlTileSearch *tile_search, Place place, 
     const uint64_t key = fl_key(search->key, (uint64_t)sweep);
     const uint16_t centre[3] = {(uint16_t)fl_match_x(ps->own), (uint16_t)fl_match_y(ps->own),
                                 (uint16_t)(ps->own.frame - search->level->first)};
-    search->kernels->draw_candidates(ps->windows, centre, (uint32_t)fl_key(key, pixel),
-                                     &ps->candidates);
+    fl_draw_candidates(ps->windows, centre, (uint32_t)fl_key(key, pixel), &ps->candidates);
     for (int k = 0; k < ps->windows->n; k++)
         __builtin_prefetch(first + ps->candidates.pixel[k]);
 }
@@ -220,13 +219,11 @@ static void look_up(PixelSearch *ps)
 
 static void filter_candidates(PixelSearch *ps)
 {
-    const FlSearch *search = ps->search;
     find_expected(ps);
     look_up(ps);
     const FlCandidateFilter filter = filter_of(ps);
     uint32_t uniformity[FL_MAX_CANDIDATES];
-    for (uint64_t left = search->kernels->filter_candidates(&ps->candidates, ps->windows->n,
-                                                            &filter, uniformity);
+    for (uint64_t left = fl_filter_candidates(&ps->candidates, ps->windows->n, &filter, uniformity);
          left; left &= left - 1) {
         const int k = __builtin_ctzll(left);
         keep_candidate(ps, k, uniformity[k]);
