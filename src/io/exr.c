@@ -9,6 +9,7 @@
 #include "io/provenance.h"
 #include "io/sink.h"
 
+#include <Imath/half.h>
 #include <OpenEXR/openexr.h>
 #include <libdeflate.h>
 #include <math.h>
@@ -43,24 +44,6 @@ enum { THICKNESS = FL_MATTES_CHANNELS, BACKWARD_U, BACKWARD_V, FLOAT_CHANNELS };
 
 static const char *const float_names[] = {"paint.thickness", "backward.u", "backward.v"};
 
-/** The half float nearest to 0 <= value <= 1, ties to even. */
-static uint16_t half_of(float value)
-{
-    union {
-        float f;
-        uint32_t u;
-    } v = {value};
-    const int exponent = (int)(v.u >> 23) - 112; // of the half
-    const uint32_t mantissa = (v.u & 0x7fffff) | 0x800000;
-    const int shift = exponent > 0 ? 13 : 14 - exponent;
-    if (shift > 24)
-        return 0;
-    const uint32_t kept = mantissa >> shift, rest = mantissa & ((1u << shift) - 1);
-    const uint32_t half = 1u << (shift - 1);
-    const uint32_t base = exponent > 0 ? (uint32_t)(exponent - 1) << 10 : 0;
-    return (uint16_t)(base + kept + (rest > half || (rest == half && (kept & 1))));
-}
-
 static uint16_t halves_of[256][256]; // by alpha and level
 static float density_of[256];        // optical, by level
 
@@ -72,8 +55,8 @@ static void fill_halves(void)
         return;
     for (int alpha = 0; alpha < 256; alpha++)
         for (int level = 0; level < 256; level++)
-            halves_of[alpha][level] =
-                half_of(fl_srgb_to_linear((uint8_t)level) / 65535.0f * ((float)alpha / 255.0f));
+            halves_of[alpha][level] = imath_float_to_half(fl_srgb_to_linear((uint8_t)level) /
+                                                          65535.0f * ((float)alpha / 255.0f));
     for (int level = 0; level < 256; level++) // that of black is finite
         density_of[level] = log10f(65535.0f / (float)MAX(fl_srgb_to_linear((uint8_t)level), 20));
     g_once_init_leave(&made, 1);
