@@ -96,7 +96,8 @@ static void mark(Scene *scene, float x0, float x1, float grown)
     was.now = scene->before;
     g_assert_true(fl_moving_edge_look(&before, &was, NULL));
     for (int i = 0; i < before.n; i++)
-        before.point[i].pace = scene->pace, before.point[i].receded = scene->receded;
+        before.point[i].pace = scene->pace, before.point[i].receded = scene->receded,
+        before.point[i].lead = 1;
     before.n = scene->pace > 0 ? before.n : 0;
     scene->shape.distance_before = before.distance;
     g_assert_true(fl_distance(scene->ahead, SIDE, SIDE, scene->beyond, NULL));
@@ -160,6 +161,7 @@ static void test_ahead(void)
 {
     Scene *scene = scene_new();
     float both;
+    scene->pace = 6;
     mark(scene, 80, 86, 0);
     const float right = front_outside(scene, 86, &both);
     g_assert_cmpfloat(both, >, 120);
@@ -171,12 +173,28 @@ static void test_ahead(void)
     scene_free(scene);
 }
 
+/* A front spreads in some frames, and is not there at once. */
+static void test_spreads(void)
+{
+    Scene *scene = scene_new();
+    float first, later;
+    mark(scene, 80, 86, 0);
+    front_outside(scene, 86, &first);
+    scene->pace = 6;
+    mark(scene, 80, 86, 0);
+    front_outside(scene, 86, &later);
+    g_test_message("fronts of %.0f in the first frame, later %.0f", first, later);
+    g_assert_cmpfloat(first, >, 10);
+    g_assert_cmpfloat(first, <, 0.7f * later);
+    scene_free(scene);
+}
+
 /* The px by which the front of a disk is seen ahead of the disk. */
 static float front_ahead(bool stops, float overrun)
 {
     Scene *scene = scene_new();
     float most = 0;
-    scene->stops = stops, scene->dials.overrun = overrun;
+    scene->stops = stops, scene->dials.overrun = overrun, scene->pace = 6;
     mark(scene, 80, 86, 0);
     for (guint i = 0; i < scene->fronts->len; i++) {
         const FlFrontMark *front = &g_array_index(scene->fronts, FlFrontMark, i);
@@ -552,8 +570,8 @@ static double blue_at(const FlPicture *picture, int x, int y)
     return mean_at(picture, x, y, 2) - mean_at(picture, x, y, 0);
 }
 
-/* The change of a channel of the ground that a shape has left, from x to x + width; the ground comes
- * up by `rocks` px in every other frame, and below it something sinks. */
+/* The change of a channel of the ground that a shape has left, from x to x + width; the ground
+ * comes up by `rocks` px in every other frame, and below it something sinks. */
 static double change_on(const char *figure, const char *fill, int x, int width, int rocks,
                         int sinks, int channel)
 {
@@ -921,6 +939,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/wet/a-front-runs-ahead-and-a-stain-stays-behind", test_ahead);
+    g_test_add_func("/wet/a-front-spreads-in-some-frames", test_spreads);
     g_test_add_func("/wet/a-front-ends-where-its-shape-stops", test_stop);
     g_test_add_func("/wet/black-paint-leaves-a-light-stain", test_black);
     g_test_add_func("/wet/a-quick-shape-leaves-less", test_quick);

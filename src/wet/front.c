@@ -16,13 +16,6 @@ typedef struct Front {
     float *strength; // 0..1: below 1 where a shape outruns its front
 } Front;
 
-/** The share of its full width that a front has by the speed of its edge. */
-static float lead_of(const FlWetShape *shape, const FlEdgePoint *point)
-{
-    const float unit = 3.6f * shape->px, lead = 1 - fl_fall(MAX(point->speed, 0) / unit);
-    return lead * fl_ease(0.06f, 0.5f, lead);
-}
-
 /** Faster than it is wide, a shape outruns what paper can drink. */
 static float calm_of(const FlWetShape *shape, const FlEdgePoint *point)
 {
@@ -36,7 +29,7 @@ static float width_of(const FlWetShape *shape, const FlWetDials *dials, const Fl
                       float calm)
 {
     const float most = MIN(14.4f * shape->px, 0.38f * point->half_width);
-    return dials->front * dials->style->width * lead_of(shape, point) * calm * most;
+    return dials->front * dials->style->width * point->lead * calm * most;
 }
 
 bool fl_marks_have_front(const FlWetShape *shape, const FlMovingEdge *edge, const FlWetDials *dials)

@@ -7,6 +7,8 @@
 #include "wet/fibres.h"
 #include <math.h>
 
+#define SPREADS 0.6f // the share of its way that a front still has to go falls so much in a frame
+
 float fl_wet_absorbance(uint8_t paint, uint8_t paper)
 {
     const float density = (float)(fl_density(paint) - fl_density(paper)) / FL_DENSITY_ONE;
@@ -253,6 +255,15 @@ static void find_motions(const FlWetShape *shape, FlMovingEdge *edge, bool *know
             leave_out_spin(shape, u / n, v / n, &edge->point[i]);
 }
 
+/** The share of its full width that a front has by the speed of its edge: it spreads to that in
+ * some frames, and shrinks at once. */
+static float find_lead(const FlWetShape *shape, float speed, float before)
+{
+    const float fast = 1 - fl_fall(MAX(speed, 0) / (3.6f * shape->px));
+    const float lead = fast * fl_ease(0.06f, 0.5f, fast);
+    return MIN(lead, lead + (before - lead) * fl_fall(SPREADS * shape->frames));
+}
+
 /** The motion is smoothed in time; strength and ink go over from the frame before. */
 static void find_point(const FlWetShape *shape, const FlMovingEdge *before, bool known,
                        const FlMovingEdge *edge, FlEdgePoint *point)
@@ -269,6 +280,7 @@ static void find_point(const FlWetShape *shape, const FlMovingEdge *before, bool
     point->receding = MAX(-point->speed, 0) * shape->frames;
     point->receded = MAX((was ? was->receded : 0) - point->speed * shape->frames, 0);
     point->speed = 0.55f * point->speed + 0.45f * facing_part(speed, facing);
+    point->lead = find_lead(shape, point->speed, was ? was->lead : 0);
 }
 
 bool fl_moving_edge_init(FlMovingEdge *edge, const FlWetShape *shape, const FlMovingEdge *before,

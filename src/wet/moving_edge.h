@@ -35,6 +35,7 @@ typedef struct FlEdgePoint {
     float nx, ny;                // outward normal
     float u, v;                  // motion since the frame before against the paper, cells
     float speed;                 // of the contour along its normal against the paper, cells a frame
+    float lead;                  // share of its full width that a front has, 0..1
     float pace;                  // its greatest speed of late, cells a frame
     float receding, receded;     // its way back since the frame before, and since it last advanced
     float half_width;            // of the shape, cells
