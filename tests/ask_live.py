@@ -3,7 +3,7 @@
 
 usage: ask_live.py ADDRESS [flood|keyed]
 keyed: the program was given --style 'ink@1 ./ink@4~2' and a config, which is saved.
-flood: opens more connections than the server has descriptors for, and drops bad.json and good.lottie, nothing else."""
+flood: opens more connections than the server has descriptors for, and drops bad.json, broken.svg and good.lottie, nothing else."""
 import http.client, json, os, socket, struct, sys, time, urllib.parse
 
 address = urllib.parse.urlsplit(sys.argv[1])
@@ -139,6 +139,10 @@ if "flood" in sys.argv:
     page.say("paint", page.state()["generation"], 1, 0, 0, "")
     words = page.until(lambda m: "refused" in m)["refused"]
     tell("an animation without frames is refused with its words", status == 200 and words == "no player")
+    status = drop("broken.svg")[0]
+    page.say("paint", page.state()["generation"], 1, 0, 0, "")
+    words = page.until(lambda m: "refused" in m)["refused"]
+    tell("a broken drawing is refused by its own name", status == 200 and words.startswith("broken.svg"))
     status = drop("good.lottie")[0]
     page.say("paint", page.state()["generation"], 1, 0, 0, "")
     tell("one with frames is shown", status == 200 and page.until(lambda m: "film" in m)["film"]["numbers"] == [7])

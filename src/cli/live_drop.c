@@ -64,6 +64,16 @@ const char *const *fl_live_drop_inputs(const FlLiveDrop *drop)
     return (const char *const *)drop->inputs;
 }
 
+char *fl_live_drop_words(const FlLiveDrop *drop, const char *words)
+{
+    GString *text = g_string_new(words);
+    for (int k = 0; k < 2 && drop; k++) {
+        g_autofree char *folder = g_strconcat(k == 0 ? drop->files : drop->folder, "/", NULL);
+        g_string_replace(text, folder, "", 0);
+    }
+    return g_string_free(text, FALSE);
+}
+
 void fl_live_drop_free(FlLiveDrop *drop)
 {
     if (!drop)

@@ -17,6 +17,9 @@ FlLiveDrop *fl_live_drop_new(SoupServerMessage *message, GError **error);
 /** The lone file, or the folder; ends with NULL. */
 const char *const *fl_live_drop_inputs(const FlLiveDrop *drop);
 
+/** Words without the paths of its folders; to be freed. drop: NULL is fine. */
+char *fl_live_drop_words(const FlLiveDrop *drop, const char *words);
+
 void fl_live_drop_free(FlLiveDrop *drop); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlLiveDrop, fl_live_drop_free)

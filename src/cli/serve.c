@@ -154,10 +154,11 @@ static bool take_back(Live *live, const char *words)
 /* The page of a sample that fails no longer waits for it. */
 static void on_failed(Live *live, const FlLiveJob *job)
 {
+    g_autofree char *words = fl_live_drop_words(live->drop, job->error->message);
     if (job->work == FL_LIVE_SAMPLE)
         answer_page(job->asker, "lost", "a sample");
-    else if (job->work != FL_LIVE_DRAFT || !take_back(live, job->error->message))
-        tell(live, "error", job->error->message);
+    else if (job->work != FL_LIVE_DRAFT || !take_back(live, words))
+        tell(live, "error", words);
 }
 
 static void on_done(FlLiveJob *job, void *data)
@@ -186,7 +187,9 @@ static void on_done(FlLiveJob *job, void *data)
 
 static void on_warning(const char *message, void *data)
 {
-    tell(data, "warning", message);
+    Live *live = data;
+    g_autofree char *words = fl_live_drop_words(live->drop, message);
+    tell(live, "warning", words);
 }
 
 static void watch_input(const char *path, void *data)
