@@ -195,6 +195,17 @@ static void roll_of_last(double x, double y, double out[2])
     out[1] = -speed * exp(-k * MAX(y - 90, -9)) * sin(phase);
 }
 
+/* A pillar as high as the page that goes to the side. */
+static double going(double x, double y, int frame)
+{
+    return 15 - fabs(x - 20 - 3 * frame) + 0 * y;
+}
+
+static void go_of(double x, double y, double out[2])
+{
+    out[0] = 3 + 0 * x, out[1] = 0 * y;
+}
+
 /* What an affine motion of the outline explains is that motion; but a wave is not its outline's. */
 static void test_outline(void)
 {
@@ -202,8 +213,10 @@ static void test_outline(void)
         Shape shape;
         void (*truth)(double x, double y, double out[2]);
         double most;
-    } films[] = {
-        {swelling, swell_of_last, .1}, {rocking, rock_of_last, .1}, {rolling, roll_of_last, .6}};
+    } films[] = {{swelling, swell_of_last, .1},
+                 {rocking, rock_of_last, .1},
+                 {rolling, roll_of_last, .6},
+                 {going, go_of, .1}};
     for (size_t k = 0; k < G_N_ELEMENTS(films); k++) {
         g_autoptr(FlFluid) fluid = fluid_of("plain");
         for (int frame = 1; frame <= 40; frame++)
@@ -211,6 +224,31 @@ static void test_outline(void)
         g_test_message("film %zu, error %g", k, error_of(films[k].shape, 40, films[k].truth));
         g_assert_cmpfloat(error_of(films[k].shape, 40, films[k].truth), <, films[k].most);
     }
+}
+
+/* The mean speed against its outline of what drifts as sliding() does. */
+static double roll_within(int frame)
+{
+    double sum = 0, n = 0;
+    for (int p = 0; p < SIDE * SIDE; p++)
+        if (sliding(p % SIDE + .5, p / SIDE + .5, frame) >= 4)
+            sum += hypot((double)motion[2 * p] - 3.5, (double)motion[2 * p + 1] - 1.5), n++;
+    return sum / n;
+}
+
+/* Smoke rolls on in a cloud that drifts as a rigid body. */
+static void test_roll(void)
+{
+    g_autoptr(FlFluid) fluid = fluid_of("smoke");
+    double least = HUGE_VAL, most = 0;
+    for (int frame = 1; frame <= 20; frame++) {
+        flow(fluid, sliding, frame - 1, frame);
+        if (frame > 10)
+            least = MIN(least, roll_within(frame)), most = MAX(most, roll_within(frame));
+    }
+    g_test_message("from %g to %g", least, most);
+    g_assert_cmpfloat(least, >, .5 * most);
+    g_assert_cmpfloat(most, >, .1);
 }
 
 /* A column whose top rises: what it gains has to come in. */
@@ -429,6 +467,7 @@ int main(int argc, char **argv)
     g_test_add_func("/fluid/held", test_held);
     g_test_add_func("/fluid/sway", test_sway);
     g_test_add_func("/fluid/outline", test_outline);
+    g_test_add_func("/fluid/roll", test_roll);
     g_test_add_func("/fluid/growth", test_growth);
     g_test_add_func("/fluid/flux", test_flux);
     g_test_add_func("/fluid/rest", test_rest);

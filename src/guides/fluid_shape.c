@@ -9,6 +9,7 @@
 #define FAR 40      // the largest distance
 #define DEEP 7      // from the contour; beyond that the distance may be coarse
 #define FIT_STEPS 15
+#define FIXED 1e6       // keeps a mode 0
 #define NOISE .03       // cells: a mean distance that is none
 #define CLEARLY 20      // by so much an affine motion has to explain a contour better
 #define LEAST_CONTOUR 6 // cells of contour of a part that flows
@@ -157,8 +158,7 @@ static void find_parts(FlFluid *f)
 }
 
 /** Lists the cells of contour, by which the parts' motion is found, and finds the middle of each
- * part's contour. A part that spans the page shows no motion of its own: a wave that runs through
- * is no water that does. Returns: their number. */
+ * part's contour. Returns: their number. */
 static int list_contour(FlFluid *f)
 {
     int n = 0;
@@ -206,12 +206,16 @@ static void add_equation(const FlFluid *f, int c, FlFluidPart *part)
                          (double)(1 / (1 + e * e / 4)), &part->fit);
 }
 
-/** Takes a step of at most two cells to the motion that explains the contour of a part. */
+/** Takes a step of at most two cells to the motion that explains the contour of a part. One that
+ * spans the page shows only its motion across: a wave that runs through is no water that does. */
 static void take_step(FlFluidPart *part, const double ridges[FL_MODES])
 {
+    const bool spans[] = {part->open[0] && part->open[1], part->open[2] && part->open[3]};
     double p[FL_MODES], longest = 2;
-    for (int k = 0; k < FL_MODES; k++)
-        fl_least_squares_ridge(&part->fit, k, ridges[k] * part->contour);
+    for (int k = 0; k < FL_MODES; k++) {
+        const bool shown = k < 2 ? !spans[k] : !spans[0] && !spans[1];
+        fl_least_squares_ridge(&part->fit, k, (shown ? ridges[k] : FIXED) * part->contour);
+    }
     if (!fl_least_squares_solve(&part->fit, p))
         return;
     for (int k = 0; k < FL_MODES; k++)
@@ -228,11 +232,9 @@ static void fit_motion(FlFluid *f, int contour, const double ridges[FL_MODES])
             parts[l].fit = (FlLeastSquares){0};
         for (int k = 0; k < contour; k++)
             add_equation(f, f->queue[k], fl_fluid_part(f, f->queue[k]));
-        for (guint l = 0; l < f->parts->len; l++) {
-            const bool *open = parts[l].open;
-            if (parts[l].known && !(open[0] && open[1]) && !(open[2] && open[3]))
+        for (guint l = 0; l < f->parts->len; l++)
+            if (parts[l].known)
                 take_step(&parts[l], ridges);
-        }
     }
 }
 
@@ -268,7 +270,7 @@ float fl_fluid_bulk_speed(const FlFluidPart *part)
  * before. */
 static void fit_parts(FlFluid *f)
 {
-    static const double rigid[FL_MODES] = {.002, .002, .01, 1e6, 1e6, 1e6},
+    static const double rigid[FL_MODES] = {.002, .002, .01, FIXED, FIXED, FIXED},
                         affine[FL_MODES] = {.002, .002, .01, .03, .03, .03};
     FlFluidPart *const parts = (FlFluidPart *)(void *)f->parts->data;
     const int n = list_contour(f);
@@ -286,7 +288,7 @@ static void fit_parts(FlFluid *f)
         part->flows = part->known && part->contour >= LEAST_CONTOUR && part->deepest >= 1;
         const double *p = part->affine.p, stretch = hypot(p[4], p[5]) / MAX(fabs(p[3]), 1e-9);
         part->even = advantage(part->left[1], part->left[0]) * MAX(0, 1 - stretch);
-        part->trust = advantage(part->left[1], part->left[2]);
+        part->trust = f->dials.buoyancy > 0 ? 0 : advantage(part->left[1], part->left[2]);
     }
 }
 
