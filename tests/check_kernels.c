@@ -180,6 +180,17 @@ static void make_windows(FlSearchWindows *windows, uint32_t most, FlRng *rng)
     windows->step[2] = (uint32_t)windows->size[0] * windows->size[1];
 }
 
+/* The place along an axis that 16 bits of the key choose within a window. */
+static uint32_t drawn(const FlSearchWindows *w, const uint16_t centre[3], uint32_t key, int axis,
+                      int k)
+{
+    const int reach = w->reach[axis][k], low = MAX(centre[axis] - reach, 0);
+    const int high = MIN(centre[axis] + reach, w->size[axis] - 1);
+    const uint32_t place = (uint32_t)(axis * FL_MAX_CANDIDATES + k) / 2;
+    const uint32_t bits = fl_hash32(key + place * FL_HASH32_STEP) >> (k % 2 * 16) & 0xffff;
+    return (uint32_t)low + (bits * (uint32_t)(high - low + 1) >> 16);
+}
+
 static void candidates_are_drawn_inside_the_windows(void)
 {
     for (uint64_t seed = 1; seed <= 2000; seed++) {
@@ -190,10 +201,12 @@ static void candidates_are_drawn_inside_the_windows(void)
         uint16_t centre[3];
         for (int axis = 0; axis < 3; axis++)
             centre[axis] = (uint16_t)fl_rng_below(&rng, w.size[axis]);
-        fl_draw_candidates(&w, centre, fl_rng_u32(&rng), &got);
+        const uint32_t key = fl_rng_u32(&rng);
+        fl_draw_candidates(&w, centre, key, &got);
         for (int k = 0; k < w.n; k++) {
             uint32_t pixel = 0;
             for (int axis = 0; axis < 3; axis++) {
+                g_assert_cmpuint(got.at[axis][k], ==, drawn(&w, centre, key, axis, k));
                 g_assert_cmpint(got.at[axis][k], <, w.size[axis]);
                 g_assert_cmpint(abs(got.at[axis][k] - centre[axis]), <=, w.reach[axis][k]);
                 pixel += got.at[axis][k] * w.step[axis];

@@ -47,7 +47,9 @@ address | fuzz)
     run=(meson test -C "$build" --timeout-multiplier 6 --print-errorlogs)
     "${run[@]}" faults hostile
     "${run[@]}" --suite unit --suite kernels --suite corpora
+    rm -rf "$build/cache"
     for _ in painted kept; do
+        rm -rf "$build/render" # else there is nothing to do
         "${render[@]}" --cache "$build/cache"
     done
     ;;
