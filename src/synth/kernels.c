@@ -55,10 +55,10 @@ static inline void draw_along(const FlSearchWindows *windows, const uint16_t cen
     const int middle = centre[axis], last = windows->size[axis] - 1;
     const int n = whole_vectors(windows->n);
     uint16_t bits[FL_MAX_CANDIDATES];
-    for (int k = 0; k < n / 2; k++) {
-        const uint32_t place = (uint32_t)(axis * FL_MAX_CANDIDATES / 2 + k);
+    for (int k = 0; k < n; k += 2) {
+        const uint32_t place = (uint32_t)(axis * FL_MAX_CANDIDATES + k) / 2;
         const uint32_t both = fl_hash32(key + place * FL_HASH32_STEP);
-        bits[2 * k] = (uint16_t)both, bits[2 * k + 1] = (uint16_t)(both >> 16);
+        bits[k] = (uint16_t)both, bits[k + 1] = (uint16_t)(both >> 16);
     }
     for (int k = 0; k < n; k++) {
         const int reach = windows->reach[axis][k];
