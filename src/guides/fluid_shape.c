@@ -175,6 +175,7 @@ static int list_contour(FlFluid *f)
     for (guint l = 0; l < f->parts->len; l++) {
         FlFluidPart *part = &g_array_index(f->parts, FlFluidPart, l);
         FlAffineMotion *m = &part->affine;
+        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): there is a part
         const double n_cells = MAX(part->contour, 1);
         m->x /= n_cells, m->y /= n_cells;
         m->size = sqrt(MAX(m->size / n_cells - m->x * m->x - m->y * m->y, 1));

@@ -133,6 +133,7 @@ static void find_pace(FlFluid *f)
     }
     for (guint i = 0; i < f->parts->len; i++) {
         FlFluidPart *part = &g_array_index(f->parts, FlFluidPart, i);
+        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): there is a part
         const double was = part->was / part->cells, now = part->pace / MAX(part->contour, 1);
         part->pace = now > was ? .5 * (now + was) : .9 * was + .1 * now;
         part->pace *= part->rests ? (double)SLOWS : 1;

@@ -123,6 +123,7 @@ uint64_t fl_filter_candidates(const FlCandidates *candidates, int n,
     int16_t own[FL_MAX_CANDIDATES];
     find_cells(candidates, whole_vectors(n), filter, cells, own);
     for (int k = 0; k < n; k++) {
+        // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.ArraySubscript): all are found
         const int use = MAX(filter->use[cells[k]] - own[k], 0);
         uniformity[k] = (uint32_t)(int32_t)MIN((float)use * filter->price, filter->most);
     }
