@@ -226,6 +226,28 @@ static void test_outline(void)
     }
 }
 
+/* Clouds that span the page and drift; in frame 21 their rear comes off the page's edge. */
+static double drifting(double x, double y, int frame)
+{
+    const double u = x - 2 * frame;
+    return MIN(28 + 6 * sin(u / 12) + 4 * sin(u / 5) - fabs(y - 80), u + 40);
+}
+
+/* What comes off the page's edge has not been pushed in there. */
+static void test_off_edge(void)
+{
+    g_autoptr(FlFluid) fluid = fluid_of("plain");
+    float fastest = 0;
+    for (int frame = 1; frame <= 24; frame++) {
+        flow(fluid, drifting, frame - 1, frame);
+        for (int p = 0; p < SIDE * SIDE && frame > 19; p++)
+            if (drifting(p % SIDE + .5, p / SIDE + .5, frame) > 0)
+                fastest = MAX(fastest, hypotf(motion[2 * p], motion[2 * p + 1]));
+    }
+    g_test_message("fastest %g", (double)fastest);
+    g_assert_cmpfloat(fastest, <, 4);
+}
+
 /* The mean speed against its outline of what drifts as sliding() does. */
 static double roll_within(int frame)
 {
@@ -467,6 +489,7 @@ int main(int argc, char **argv)
     g_test_add_func("/fluid/held", test_held);
     g_test_add_func("/fluid/sway", test_sway);
     g_test_add_func("/fluid/outline", test_outline);
+    g_test_add_func("/fluid/off-edge", test_off_edge);
     g_test_add_func("/fluid/roll", test_roll);
     g_test_add_func("/fluid/growth", test_growth);
     g_test_add_func("/fluid/flux", test_flux);

@@ -15,6 +15,7 @@
 #define LEAST_CONTOUR 6 // cells of contour of a part that flows
 #define LEAP .05f       // of the page's larger side
 #define BORN 2.5f       // cells outside the shape that motion foretells, where a puff begins
+#define GONE 1.5f       // cells by which contour that is gone lies inside it
 #define NONE (-1)
 
 /* Cells lie on the page, so that they are the same for other parts of it. With a margin and a
@@ -239,8 +240,8 @@ static void fit_motion(FlFluid *f, int contour, const double ridges[FL_MODES])
     }
 }
 
-/** Sums what the motions of its part leave unexplained at a cell. */
-static void judge_motions(const FlFluid *f, int c, FlFluidPart *part)
+/** What the rigid and the affine motion of its part and its flow leave unexplained at a cell. */
+static void explain(const FlFluid *f, int c, const FlFluidPart *part, float left[3])
 {
     const float x = f->column[c], y = f->line[c], memory = f->dials.memory;
     float way[3][2];
@@ -248,9 +249,18 @@ static void judge_motions(const FlFluid *f, int c, FlFluidPart *part)
     fl_fluid_move(&part->affine, x, y, way[1]);
     fl_fluid_way(f, x, y, way[2]);
     way[2][0] *= memory, way[2][1] *= memory;
+    for (int k = 0; k < 3; k++)
+        left[k] = unexplained(f, c, way[k]);
+}
+
+/** Sums what the motions of its part leave unexplained at a cell. */
+static void judge_motions(const FlFluid *f, int c, FlFluidPart *part)
+{
+    float left[3];
+    explain(f, c, part, left);
     for (int k = 0; k < 3; k++) {
-        const float e = unexplained(f, c, way[k]);
-        part->left[k] += (double)(e * e / (1 + e * e / 4)) - NOISE * NOISE;
+        const float e = left[k] * left[k];
+        part->left[k] += (double)(e / (1 + e / 4)) - NOISE * NOISE;
     }
 }
 
@@ -327,7 +337,8 @@ static void find_born(FlFluid *f)
     }
 }
 
-/** The normal and the velocity of the contour, in the cells beside it. */
+/** The normal and the velocity of the contour, in the cells beside it. A wisp that fades and a side
+ * that comes off the page's edge are gone, which pushes nothing; a liquid has flowed off. */
 static void find_contour(FlFluid *f)
 {
     for (int c = 0; c < f->n; c++) {
@@ -341,9 +352,11 @@ static void find_contour(FlFluid *f)
         const float ax = f->open_u[c] - f->open_u[c + 1],
                     ay = f->open_v[c] - f->open_v[c + f->stride];
         const float x = f->column[c], y = f->line[c];
-        float motion[2];
+        float motion[2], left[3];
         fl_fluid_move(&part->rigid, x, y, motion);
-        const float grown = f->ring[c] ? 0 : unexplained(f, c, motion);
+        explain(f, c, part, left);
+        const bool gone = f->dials.emit > 0 && MAX(MAX(left[0], left[1]), left[2]) < -GONE;
+        const float grown = f->ring[c] || gone ? 0 : left[0];
         f->nx[c] = -dx / slope, f->ny[c] = -dy / slope;
         f->length[c] = sqrtf(ax * ax + ay * ay);
         if (part->known)
