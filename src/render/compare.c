@@ -174,7 +174,7 @@ static void name_columns(const Comparison *c)
     for (int column = 0; column < n_columns(c); column++) {
         const int frame = frame_in_column(c, column);
         g_autofree char *name =
-            frame < 0 ? g_strdup("the middle line through time, downwards")
+            frame < 0 ? g_strdup("the middle line, time downwards")
                       : g_strdup_printf("frame %d", fl_drawing_number(c->drawing, frame));
         fl_contact_sheet_name_column(&c->contact, column, name);
     }
