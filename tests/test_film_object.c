@@ -379,6 +379,32 @@ static void a_frame_can_be_stopped_within(void)
     g_assert_cmpint(stop, >=, 6);
 }
 
+/* The moving region is to show a picture that it keeps, and has not yet when the film stops. */
+static void a_frame_can_be_stopped_on_the_way_to_it(void)
+{
+    g_autoptr(Case) test = case_new(), other = case_new();
+    bool whole = false;
+    int left = 0;
+    const FlFilmCalls calls = {.size = sizeof calls, .stopped = count_down, .data = &left};
+    fl_film_set_calls(test->film, &calls);
+    for (int k = 0; k < 2; k++) { // no marks, which follow from all frames before
+        set(test->film, NULL, k ? "front" : "stain", "0");
+        set(other->film, NULL, k ? "front" : "stain", "0");
+    }
+    for (int stop = 1; !whole; stop += 2) {
+        g_autoptr(GError) error = NULL;
+        g_autofree char *value = g_strdup_printf("%d", stop);
+        g_free(frame_of(test->film, 5));
+        set(test->film, "navy-335588", "w-temp", value);
+        set(other->film, "navy-335588", "w-temp", value);
+        left = stop;
+        whole = fl_film_frame(test->film, 4, &error);
+        left = 0;
+        g_autofree uint8_t *now = frame_of(test->film, 3), *alone = frame_of(other->film, 3);
+        g_assert_cmpmem(now, 4 * WIDTH * HEIGHT, alone, 4 * WIDTH * HEIGHT);
+    }
+}
+
 /* Also while guides are made, of its picture and then of the film. */
 static void a_draft_can_be_stopped_within(void)
 {
@@ -502,6 +528,7 @@ int main(int argc, char **argv)
     TEST(a_config_of_text_reads_no_drawing_anew);
     TEST(a_config_file_is_read_again);
     TEST(a_frame_can_be_stopped_within);
+    TEST(a_frame_can_be_stopped_on_the_way_to_it);
     TEST(a_draft_can_be_stopped_within);
     TEST(a_stop_before_the_paint_keeps_the_drawing);
     TEST(a_late_start_knows_the_paper);

@@ -299,6 +299,7 @@ static bool paint_picture(FlPainter *painter, int k, int index, GError **error)
     const bool painted =
         ready && (painter->result.from == FL_FROM_CACHE || run_engine(painter, error));
     painter->next = painted ? k + 1 : NONE;
+    painter->picture = painted ? painter->picture : NONE;
     return painted;
 }
 
@@ -370,13 +371,22 @@ static bool restart(FlPainter *painter, GError **error)
     return fresh || open_engine(painter, error);
 }
 
+/* A painter that was to begin with the picture after the frame's, and was stopped before, shows
+ * another one. */
+static bool shows(const FlPainter *painter, int frame)
+{
+    const int index = frame / painter->plan->settings.hold;
+    return painter->picture == painter->wrap + index &&
+           painter->next == painter->loop.n + index + 1;
+}
+
 int fl_painter_seek(FlPainter *painter, int frame, GError **error)
 {
     const int hold = painter->plan->settings.hold, lead_in = painter->loop.n;
     const bool files = painter->origin == FL_FROM_FILE;
     const int k = files ? frame : lead_in + frame / hold;
     int from = k;
-    if (painter->origin == FL_FROM_NOWHERE || painter->next == k + 1)
+    if (painter->origin == FL_FROM_NOWHERE || shows(painter, frame))
         return frame;
     while (!files && from > 0 && from != painter->next && !fl_reuse_has(&painter->reuse, from))
         from--;
@@ -391,7 +401,7 @@ int fl_painter_start_at(FlPainter *painter, int frame, GError **error)
 {
     const int hold = painter->plan->settings.hold, k = frame / hold;
     FlReuse *reuse = &painter->reuse;
-    if (painter->origin != FL_FROM_ENGINE || painter->plan->loops || painter->next == k + 1)
+    if (painter->origin != FL_FROM_ENGINE || painter->plan->loops || shows(painter, frame))
         return fl_painter_seek(painter, frame, error);
     const bool known = painter->next == k || fl_reuse_has(reuse, k);
     if (!known && k > 0 && fl_reuse_has(reuse, k - 1))
