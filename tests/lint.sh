@@ -195,6 +195,14 @@ limits_are_documented() {
         done
 }
 
+# Drying lines and passes lie on the drawing; a fluid would flow past them.
+lines_in_fluids() {
+    grep -lE '^fluid = [^n]' fixtures/styles/*/style.ini | xargs awk '
+        /^wash = 0|^tide = 0/ { dry[FILENAME] = 1 }
+        /^wash = 0|^passes = 0/ { even[FILENAME] = 1 }
+        END { for (i = 1; i < ARGC; i++) if (!dry[ARGV[i]] || !even[ARGV[i]]) print ARGV[i] }'
+}
+
 report 'a folder includes headers of itself and the folders above it' layering
 # A source file and its header are one file here.
 no_include_circles() {
@@ -218,6 +226,7 @@ report '--help fits one screen' help_fits_one_screen "$build/src/cli/fluidy-svg"
 report 'CI runs the test command of the README' readme_test_command
 report 'the messages of the README are those of the program' readme_messages
 report 'the files that the README shows are there, and small' readme_pictures
+report 'no line of a wash stands still in a style that flows' lines_in_fluids
 if command -v clang-format >/dev/null; then
     report 'the sources are formatted' formatting
 else
