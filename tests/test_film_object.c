@@ -1,5 +1,6 @@
 /* The film object: frames in any order, and what a change of options makes anew. */
 #include "io/png.h"
+#include "keep/store.h"
 #include "scratch.h"
 #include <fluidy/fluidy.h>
 #include <string.h>
@@ -154,25 +155,29 @@ static void another_style_paints_its_region_alone(void)
     g_assert_cmpint(fl_film_stats(test->film)->n_read, ==, 1);
 }
 
+static void keep(FlStore *store, uint64_t name)
+{
+    static uint8_t picture[1000];
+    fl_store_put(store, FL_KEPT_PICTURE, (FlDigest){name, 0}, &(FlSpan){picture, sizeof picture},
+                 1);
+}
+
+static bool has(FlStore *store, uint64_t name)
+{
+    return fl_store_has(store, FL_KEPT_PICTURE, (FlDigest){name, 0});
+}
+
 static void what_is_kept_is_bounded(void)
 {
-    enum { HELD = 4 * 2 * 2 }; // choices, regions and frames
-    g_autoptr(Case) test = case_new();
-    set(test->film, NULL, "frames", "0-1");
-    set(test->film, NULL, "detail", "draft");
-    for (int seed = 1; painted(test->film) < HELD; seed++) {
-        g_autofree char *value = g_strdup_printf("%d", seed);
-        set(test->film, NULL, "seed", value);
-        g_free(frame_of(test->film, 0));
-    }
-    set(test->film, NULL, "seed", "1");
-    g_free(frame_of(test->film, 0));
-    g_assert_cmpint(painted(test->film), ==, HELD);
-    set(test->film, NULL, "seed", "1000");
-    g_free(frame_of(test->film, 0));
-    set(test->film, NULL, "seed", "2"); // whose pictures gave way
-    g_free(frame_of(test->film, 0));
-    g_assert_cmpint(painted(test->film), ==, HELD + 4);
+    g_autoptr(FlStore) store = fl_store_open(&(FlStoreOptions){.memory = 4000});
+    for (uint64_t name = 1; name <= 4; name++)
+        keep(store, name);
+    g_assert_true(has(store, 1)); // and so was used last
+    keep(store, 5);
+    g_assert_true(has(store, 1) && has(store, 3) && has(store, 4) && has(store, 5));
+    g_assert_false(has(store, 2)); // it gave way
+    keep(store, 5);
+    g_assert_true(has(store, 3));
 }
 
 static void drafts_loops_and_holds_are_as_written(void)

@@ -14,9 +14,8 @@ G_BEGIN_DECLS
  *
  * Another "tint" or "paper" only composes the frames again; another "style" of a region only paints
  * that region again; no option of the paint reads the drawing again. Painted pictures stay in
- * memory, so that a choice that is taken back shows the earlier ones at once: of frames and of
- * drafts as many as four films have, up to 192 MiB of frames and 64 of drafts, each at most an
- * eighth of the limit ‘memory’.
+ * memory, so that a choice that is taken back shows the earlier ones at once: up to 192 MiB of
+ * frames and 64 of drafts, each at most an eighth of the limit ‘memory’.
  *
  * Threads: one film belongs to one thread at a time; several threads may have a film each. While
  * the process has a single thread, drawings are read and drawn in child processes, which are

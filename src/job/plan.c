@@ -12,7 +12,6 @@
 #include <math.h>
 #include <string.h>
 
-#define KEPT_CHOICES 4  // as many times all pictures of the film are in memory
 #define SMALL_PX 500000 // that are painted: up to here a heap for each thread takes little
 
 /* Options that decide paint, but not the drawing. */
@@ -170,7 +169,6 @@ static bool make_plan(FlPlan *plan, const FlRenderOptions *given, const FlPlan *
         !fl_plan_choose_styles(plan, error))
         return false;
     fl_plan_list_inputs(plan);
-    fl_store_hold_most(plan->cache, (guint)(KEPT_CHOICES * shapes->n_painted * shapes->n_frames));
     return (!plan->options.merge || plan->finished == FL_FINISHED_FRAMES ||
             look_at_paint(plan, error));
 }

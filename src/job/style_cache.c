@@ -18,8 +18,7 @@
 #define BYTES_OF_WINDOW 50.0            // of a pixel, measured: with rotations
 #define BYTES_OF_REST 9.0               // while it is loaded
 #define WINDOW_BYTES (1024.0 * 1048576) // of one style
-#define UNUSED_BYTES (128.0 * 1048576)  // of styles that the plan no longer uses
-#define MOST_UNUSED 24                  // styles; a page shows samples of all
+#define UNUSED_BYTES (32.0 * 1048576)   // of styles that the plan no longer uses
 
 struct FlStyleCache {
     FlCaller caller;
@@ -189,13 +188,12 @@ static double bytes_of(const FlStyleInstance *instance)
 void fl_style_cache_trim(FlStyleCache *cache, GPtrArray *used)
 {
     double bytes = 0;
-    int n = 0;
     for (guint i = cache->instances->len; i-- > 0;) {
         const FlStyleInstance *instance = cache->instances->pdata[i];
         if (g_ptr_array_find(used, instance, NULL))
             continue;
         bytes += bytes_of(instance);
-        if (bytes > UNUSED_BYTES || ++n > MOST_UNUSED)
+        if (bytes > UNUSED_BYTES)
             g_ptr_array_remove_index(cache->instances, i);
     }
 }

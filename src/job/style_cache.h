@@ -26,7 +26,7 @@ const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSet
                                           float texture_px, GError **error);
 
 /** Frees instances that are not among the used ones, those asked for longest ago first, until the
- * others take no more than 128 MiB. */
+ * others take no more than 32 MiB. */
 void fl_style_cache_trim(FlStyleCache *cache, GPtrArray *used);
 
 /** An estimate of the bytes of all instances. */

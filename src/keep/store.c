@@ -27,7 +27,6 @@ struct FlStore {
     GMutex lock;            // of what follows
     GHashTable *link;       // of the pictures in `held`, by name
     GQueue held;            // of HeldPicture; the one used last is the first
-    guint most_held;
     size_t held_bytes;
     char *problem; // to be reported; may be NULL
     bool reported; // one was
@@ -49,7 +48,6 @@ FlStore *fl_store_open(const FlStoreOptions *options)
                             : g_strdup(folder);
     store->limit = MIB * (options->mib > 0 ? options->mib : DEFAULT_MIB);
     store->link = g_hash_table_new(fl_digest_hash, fl_digest_equal);
-    store->most_held = G_MAXUINT;
     g_mutex_init(&store->lock);
     return store;
 }
@@ -96,17 +94,8 @@ static void remember(FlStore *store, FlDigest name, const FlSpan *parts, int n)
     g_queue_push_head(&store->held, held);
     g_hash_table_insert(store->link, &held->name, store->held.head);
     store->held_bytes += g_bytes_get_size(held->bytes);
-    while (store->held_bytes > store->options.memory || store->held.length > store->most_held)
+    while (store->held_bytes > store->options.memory)
         let_go(store, store->held.tail);
-    g_mutex_unlock(&store->lock);
-}
-
-void fl_store_hold_most(FlStore *store, guint n)
-{
-    if (!store)
-        return;
-    g_mutex_lock(&store->lock);
-    store->most_held = n;
     g_mutex_unlock(&store->lock);
 }
 

@@ -46,9 +46,6 @@ GBytes *fl_store_get(FlStore *store, FlKept kind, FlDigest name);
 /** Keeps the parts in a row. After the first failure to write, calls are ignored. */
 void fl_store_put(FlStore *store, FlKept kind, FlDigest name, const FlSpan *parts, int n);
 
-/** From the next picture on, memory has at most n of them: those used last. NULL is fine. */
-void fl_store_hold_most(FlStore *store, guint n);
-
 void fl_store_drop(FlStore *store, FlKept kind, FlDigest name);
 
 /** Warns of the first problem, once; call it in the thread that the options want. NULL is fine. */

@@ -470,6 +470,8 @@ bool fl_frames_prepare(FlFrames *frames, GError **error)
     if (frames->old_plan)
         drop_styles(plan);
     g_clear_pointer(&frames->old_plan, fl_plan_free);
+    if (plan->any_order)
+        fl_memory_trim(); // of earlier options
     if (starts_late(plan) && fl_painters_flow(painters))
         read_earlier(frames);
     const bool ready = (plan->shapes.rasterised ||
