@@ -16,6 +16,7 @@ enum { FL_DRAWN_AS_IT_IS = -1, FL_LEFT_OUT = -2 };
 /** A style in use: its recording, packed for the search, and its ink. */
 typedef struct FlStyleInstance {
     char *path;
+    int caller;           // of its cache, the last one that has asked for it
     FlParams params;      // that it was packed for
     bool reverse, halved; // halved: for a field of half the size, if there is room for its patches
     FlExemplar *exemplar;

@@ -22,6 +22,7 @@
 
 struct FlStyleCache {
     FlCaller caller;
+    int n_callers;
     bool makes, exact;    // see fl_style_cache_new()
     GPtrArray *instances; // of FlStyleInstance
 };
@@ -47,6 +48,7 @@ FlStyleCache *fl_style_cache_new(bool makes, bool exact)
 void fl_style_cache_set_caller(FlStyleCache *cache, const FlCaller *caller)
 {
     cache->caller = *caller;
+    cache->n_callers++;
 }
 
 void fl_style_cache_free(FlStyleCache *cache)
@@ -167,9 +169,11 @@ const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSet
     }
     if (!instance)
         instance = load(cache, path, settings, texture_px, error);
-    if (instance)
-        g_ptr_array_add(cache->instances, instance);
-    if (instance && engine->needs_tile && !instance->tile &&
+    if (!instance)
+        return NULL;
+    instance->caller = cache->n_callers;
+    g_ptr_array_add(cache->instances, instance);
+    if (engine->needs_tile && !instance->tile &&
         !(instance->tile = fl_tile_load(path, instance->enlarged, error)))
         return NULL;
     return instance;
@@ -185,12 +189,12 @@ static double bytes_of(const FlStyleInstance *instance)
     return bytes + (enlargement ? fl_enlargement_bytes(enlargement) : 0);
 }
 
-void fl_style_cache_trim(FlStyleCache *cache, GPtrArray *used)
+void fl_style_cache_trim(FlStyleCache *cache)
 {
     double bytes = 0;
     for (guint i = cache->instances->len; i-- > 0;) {
         const FlStyleInstance *instance = cache->instances->pdata[i];
-        if (g_ptr_array_find(used, instance, NULL))
+        if (instance->caller == cache->n_callers)
             continue;
         bytes += bytes_of(instance);
         if (bytes > UNUSED_BYTES)

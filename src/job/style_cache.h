@@ -25,9 +25,9 @@ void fl_style_cache_free(FlStyleCache *cache); // NULL is fine
 const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSettings *settings,
                                           float texture_px, GError **error);
 
-/** Frees instances that are not among the used ones, those asked for longest ago first, until the
- * others take no more than 32 MiB. */
-void fl_style_cache_trim(FlStyleCache *cache, GPtrArray *used);
+/** Frees instances that the last caller has not asked for, those asked for longest ago first, until
+ * the others take no more than 32 MiB. */
+void fl_style_cache_trim(FlStyleCache *cache);
 
 /** An estimate of the bytes of all instances. */
 double fl_style_cache_bytes(const FlStyleCache *cache);

@@ -435,16 +435,6 @@ bool fl_frames_check(FlFrames *frames, GError **error)
                                       : make_sheet(frames, error));
 }
 
-/* Frees styles that an earlier plan has used. */
-static void drop_styles(const FlPlan *plan)
-{
-    const FlShapes *shapes = &plan->shapes;
-    g_autoptr(GPtrArray) used = g_ptr_array_new();
-    for (int p = 0; p < shapes->n_painted; p++)
-        g_ptr_array_add(used, (gpointer)shapes->painted[p].style);
-    fl_style_cache_trim(plan->styles, used);
-}
-
 /* Looks up paint that is kept. While guides or statistics are inspected, everything is painted. */
 static void recall(FlFrames *frames)
 {
@@ -467,8 +457,7 @@ bool fl_frames_prepare(FlFrames *frames, GError **error)
     recall(frames);
     if (!wet)
         g_clear_pointer(&frames->wet, fl_wet_free);
-    if (frames->old_plan)
-        drop_styles(plan);
+    fl_style_cache_trim(plan->styles);
     g_clear_pointer(&frames->old_plan, fl_plan_free);
     if (plan->any_order)
         fl_memory_trim(); // of earlier options
