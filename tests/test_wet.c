@@ -733,15 +733,16 @@ static void test_limb(void)
     g_assert_cmpfloat(late, <, stain + 0.75 * (bare - stain));
 }
 
-/* The most ink of the fronts of a disk of region 3 where paint of a region was seen: of any colour
- * but the disk's own. */
-static float most_ink(int16_t region, float pace)
+/* The most ink of the fronts of a disk of region 3 where paint of a region was seen, of any colour
+ * but the disk's own: in places up to so far from the middle of the disk. */
+static float most_ink(int16_t region, float pace, float radius)
 {
     Scene *scene = scene_new();
     scene->pace = pace;
     float most = 0;
+    draw_disk(80, radius, scene->before);
     for (int p = 0; p < PIXELS; p++)
-        scene->region[p] = region;
+        scene->region[p] = scene->before[p] > 0 ? region : -1;
     scene->shape.region = 3;
     mark(scene, 80, 86, 0);
     g_assert_cmpuint(scene->fronts->len, >, 0);
@@ -754,16 +755,17 @@ static float most_ink(int16_t region, float pace)
     return most;
 }
 
-/* Paint that is seen runs ahead: that of a shape above where the shape's own was never seen, and
- * none of a shape that has faded. */
+/* Paint that is seen runs ahead: that of a shape above where the shape's own was never seen or both
+ * end at one edge, and none of a shape that has faded. */
 static void test_seen_paint(void)
 {
-    const float own = most_ink(3, 0);
+    const float all = 4 * RADIUS, own = most_ink(3, 0, all);
     g_assert_cmpfloat(own, >, 0.1f);
-    g_assert_cmpfloat(most_ink(4, 0), ==, own);
-    g_assert_cmpfloat(most_ink(4, 1), ==, 0); // it had none before
-    g_assert_cmpfloat(most_ink(2, 0), ==, 0);
-    g_assert_cmpfloat(most_ink(-1, 0), ==, 0);
+    g_assert_cmpfloat(most_ink(4, 0, all), ==, own);
+    g_assert_cmpfloat(most_ink(4, 1, all), ==, 0); // it had none before
+    g_assert_cmpfloat(most_ink(4, 1, RADIUS), >, 0.9f * own);
+    g_assert_cmpfloat(most_ink(2, 0, all), ==, 0);
+    g_assert_cmpfloat(most_ink(-1, 0, all), ==, 0);
 }
 
 /* A shape that grows further than paint is looked for has the colour of its earlier edge. */

@@ -8,6 +8,7 @@
 #include <math.h>
 
 #define SPREADS 0.6f // the share of its way that a front still has to go falls so much in a frame
+#define BEYOND_PX 5  // px of the page: so far beyond an edge a shape goes on
 
 float fl_wet_absorbance(uint8_t paint, uint8_t paper)
 {
@@ -157,9 +158,18 @@ static void find_kept(const FlWetShape *shape, float pace_before, FlEdgePoint *p
                   (1 - fl_ease(1.3f, 2, shrunk / (moved + 3 * px)));
 }
 
+/** The cell of laid paint at a place of the page, or the nearest at its sides. */
+static size_t cell_at(const FlLaid *laid, float x, float y)
+{
+    const int column = CLAMP((int)floorf(x + 0.5f), 0, laid->width - 1);
+    const int row = CLAMP((int)floorf(y + 0.5f), 0, laid->height - 1);
+    return (size_t)row * (size_t)laid->width + (size_t)column;
+}
+
 /** The ink of the paint a little inside the edge, in the frame before; where the shape has just
  * come, that is inside the nearest earlier edge, and at the side of the page beyond it. A shape
- * that has faded has no ink; paint that another shape covers keeps its earlier one. */
+ * that has faded has no ink. Paint below another shape keeps its earlier one if that goes on beyond
+ * the edge; if it ends there as well, its paint is what is seen to move. */
 static void find_ink(const FlWetShape *shape, const FlMovingEdge *before, const FlEdgePoint *was,
                      FlEdgePoint *point)
 {
@@ -175,17 +185,18 @@ static void find_ink(const FlWetShape *shape, const FlMovingEdge *before, const 
     const float nx = fresh ? was->nx : point->nx, ny = fresh ? was->ny : point->ny;
     x = fresh ? (float)before->rect.x + was->x : (float)shape->rect.x + x;
     y = fresh ? (float)before->rect.y + was->y : (float)shape->rect.y + y;
+    const float out = BEYOND_PX * shape->px;
+    const int beyond = laid->region[cell_at(laid, x + out * nx, y + out * ny)];
     for (int k = 1; k <= 4; k++) {
         const float depth = MIN(2.2f * (float)k * shape->px, 0.8f * point->half_width);
-        const int px = CLAMP((int)floorf(x - depth * nx + 0.5f), 0, laid->width - 1);
-        const int py = CLAMP((int)floorf(y - depth * ny + 0.5f), 0, laid->height - 1);
-        const size_t cell = (size_t)py * (size_t)laid->width + (size_t)px;
-        if (laid->region[cell] < shape->region)
+        const size_t cell = cell_at(laid, x - depth * nx, y - depth * ny);
+        const int region = laid->region[cell];
+        if (region < shape->region)
             continue;
-        const bool covered = was && laid->region[cell] > shape->region;
+        const bool below = was && region > shape->region && region == beyond;
         for (size_t c = 0; c < 3; c++)
             sum[c] +=
-                covered ? was->ink[c] : fl_wet_absorbance(laid->rgb[3 * cell + c], shape->paper[c]);
+                below ? was->ink[c] : fl_wet_absorbance(laid->rgb[3 * cell + c], shape->paper[c]);
         weight++;
     }
     for (int c = 0; c < 3; c++)
