@@ -46,7 +46,13 @@ address | fuzz)
     # Meson builds what these tests need.
     run=(meson test -C "$build" --timeout-multiplier 6 --print-errorlogs)
     "${run[@]}" faults hostile
-    "${run[@]}" --suite unit --suite kernels --suite corpora
+    "${run[@]}" --suite kernels --suite corpora
+    # These look at pictures of whole renders, whose code other tests run.
+    looks=(/lazy/contrast-stays-where-use-is-equal-and-goes-where-it-is-not
+        /maps/maps_change_the_paint_where_they_are_dark /paint/a_cut_out_brings_its_own_alpha
+        /wet/a-stain-stays-in-place-between-cells /wet/a-tide-and-a-moon-leave-the-paper-as-it-is
+        /wet/ground-is-stained-and-a-face-is-not)
+    "${run[@]}" --suite unit --test-args="${looks[*]/#/-s }"
     rm -rf "$build/cache"
     for _ in painted kept; do
         rm -rf "$build/render" # else there is nothing to do
