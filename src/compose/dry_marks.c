@@ -23,8 +23,8 @@ typedef struct Tool {
 } Tool;
 
 static const Tool tools[] = {
-    [FL_MARKS_CHARCOAL] = {.62f, .20f, .74f, 15, 2.2f, 170, .18f, 1.5f, 0},
-    [FL_MARKS_PASTEL] = {.58f, .20f, .52f, 18, 2.6f, 150, .10f, 1.2f, 0},
+    [FL_MARKS_CHARCOAL] = {.66f, .16f, .80f, 15, 2.2f, 170, .18f, 1.5f, 0},
+    [FL_MARKS_PASTEL] = {.50f, .12f, .52f, 26, 3.2f, 150, .42f, 1.2f, 0},
     [FL_MARKS_BRUSH] = {.50f, .60f, .55f, 30, 3.0f, 260, .25f, 1.15f, 12},
 };
 
