@@ -150,7 +150,7 @@ static void a_leaf_that_goes_takes_nothing_along(void)
         assert_moves(drawing, t, 3, 0);
 }
 
-/* A band that is drawn from left to right, and taken away again. */
+/* A band that is drawn from left to right, and taken away again: its edge moves. */
 static void a_shape_that_is_built_holds_its_anchor(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -161,6 +161,15 @@ static void a_shape_that_is_built_holds_its_anchor(void)
         add_frame(folder, t, band);
     }
     assert_film(folder, 0, 0, 0);
+    g_autoptr(FlDrawing) drawing = open_film(folder);
+    const FlDrift built = fl_drawing_drift(drawing, 0, -1, N / 2, false);
+    g_test_message("its edge drifts by %.2f px a frame", (double)built.x);
+    g_assert_cmpfloat(built.x, >, .05f);
+    g_assert_cmpfloat(fabsf(built.y), <, .1f * built.x);
+    g_assert_cmpfloat(fl_drawing_drift(drawing, 0, -1, N - 1, false).x, <, built.x);
+    fl_drawing_halve(drawing);
+    const float half = fl_drawing_drift(drawing, 0, -1, N / 2, false).x;
+    g_assert_cmpfloat(fabsf(2 * half - built.x), <, 1e-4f);
 }
 
 /* A triangle that becomes a square node by node, within the same box. */

@@ -58,9 +58,10 @@ typedef struct FlAnchor {
     float rest_x, rest_y; // its place in that frame
     float axis;           // direction of the longer side in that frame, degrees; NAN: it is round
     float side;           // of a square as large as the region's shapes, px; the same in all frames
+    float grown_x, grown_y; // way that edges have come by growth since that frame
 } FlAnchor;
 
-/** The motion of an anchor through some frames, px a frame. */
+/** The motion of an anchor and of edges that grow through some frames, px a frame. */
 typedef struct FlDrift {
     float x, y;
     float pace; // the mean of its speed, whichever way it went
@@ -127,9 +128,9 @@ int fl_drawing_shown(const FlDrawing *drawing, int frame);
 /** A region's anchor in a frame; it depends on no other region. */
 FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame);
 
-/** The mean motion of a region's anchor over the frames up to one, of which the last ones weigh
- * most; before its first frame a region moves as after it. ground: a region that the paper moves
- * with; -1: the paper rests. loop: frame 0 follows the last. */
+/** The mean motion of a region's anchor and of its edges that grow over the frames up to one, of
+ * which the last ones weigh most; before its first frame a region moves as after it. ground: a
+ * region that the paper moves with; -1: the paper rests. loop: frame 0 follows the last. */
 FlDrift fl_drawing_drift(const FlDrawing *drawing, int region, int ground, int frame, bool loop);
 
 /** The limbs of a region that are seen in a frame, FL_LIMBS at most; none if its shapes move as one

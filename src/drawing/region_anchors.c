@@ -36,9 +36,10 @@ typedef struct Means {
 /* The motion of a region's leaves into a frame. */
 typedef struct Fit {
     Means all, steady; // steady: the leaves that tell of a turn
-    FlPoint turn; // of those the conjugates of `from` times `to`, with those of harmonics; x is
-                  // real
-    double most;  // that the turn could be
+    FlPoint turn;  // of those the conjugates of `from` times `to`, with those of harmonics; x is
+                   // real
+    double most;   // that the turn could be
+    FlPoint grown; // sum of the ways of edges at which paint is laid, weighted by area
 } Fit;
 
 /* A region that is followed. */
@@ -48,6 +49,7 @@ typedef struct Region {
     Means means;      // as its first frame shows it
     double spread[3]; // of its shapes, each about its own middle: as in FlPose, times the weight
     bool begun;       // true after that frame
+    FlPoint way;      // of growth, smoothed
     bool limbs;       // true if some of its limbs move by themselves
 } Region;
 
@@ -106,8 +108,10 @@ static void add_turn(Fit *fit, double weight, FlPoint from, FlPoint to)
     fit->most += weight * (from.x * from.x + from.y * from.y + to.x * to.x + to.y * to.y);
 }
 
-#define HELD_PX 0.1 // of a side of a box that stays where it is
-#define GROWN_PX 1  // of one that moves on
+#define HELD_PX 0.1  // of a side of a box that stays where it is
+#define GROWN_PX 1   // of one that moves on
+#define GROWS 0.006  // way of a growing edge in a frame, at most, share of the page's longer side
+#define FOLLOWS 0.15 // share of it by which the mean way follows: strokes come one by one
 
 /* True if a leaf has grown on one side, held the other, and not shrunk on any; page: its width and
  * height. False at the page's edges, which may cut the leaf off. */
@@ -159,7 +163,11 @@ static void add_leaf(Fit *fit, const FlSurveyPart *before, const FlSurveyPart *n
     const FlPose *a = &before->pose, *b = &now->pose;
     const double weight = MIN(weight_of(before), weight_of(now));
     if (stays(before, now, page)) {
-        add_means(&fit->all, weight, middle_of(before, false), middle_of(before, false));
+        const FlPoint from = middle_of(before, false), to = middle_of(now, false);
+        add_means(&fit->all, weight, from, from);
+        const FlPoint way = {2 * (to.x - from.x), 2 * (to.y - from.y)}; // one side is held
+        const double most = GROWS * (double)MAX(page[0], page[1]), length = hypot(way.x, way.y);
+        add(&fit->grown, weight * MIN(1, most / MAX(length, 1e-6)), way);
         return;
     }
     if (!steady || a->n == 0 || a->n != b->n) {
@@ -204,7 +212,8 @@ static float within(double px)
     return (float)CLAMP(px, (double)-FL_POSE_MOST_PX, (double)FL_POSE_MOST_PX);
 }
 
-static void move(FlAnchor *anchor, const Fit *fit)
+/* way: of growth, smoothed; it goes on. */
+static void move(FlAnchor *anchor, const Fit *fit, FlPoint *way)
 {
     if (fit->all.weight <= 0)
         return;
@@ -216,6 +225,10 @@ static void move(FlAnchor *anchor, const Fit *fit)
         unit_of(times(turn, (FlPoint){(double)anchor->cosine, (double)anchor->sine}));
     anchor->x = within(to.x + turned.x), anchor->y = within(to.y + turned.y);
     anchor->cosine = (float)axis.x, anchor->sine = (float)axis.y;
+    way->x += FOLLOWS * (fit->grown.x / fit->all.weight - way->x);
+    way->y += FOLLOWS * (fit->grown.y / fit->all.weight - way->y);
+    anchor->grown_x += within(way->x);
+    anchor->grown_y += within(way->y);
 }
 
 static Leaf *leaf_of(const Follower *f, const FlSurveyPart *part)
@@ -239,7 +252,7 @@ static void note_leaf(Follower *f, int t, const FlSurveyPart *part)
     if (known && leaf->limb) {
         Fit own = {{0}};
         add_leaf(&own, leaf->part, part, keeps_nodes(leaf), f->page);
-        move(&leaf->anchor, &own);
+        move(&leaf->anchor, &own, &(FlPoint){0});
     } else {
         leaf->anchor.cosine = leaf->anchor.sine = 0; // it begins
     }
@@ -349,8 +362,9 @@ void fl_anchor_rest_row(const FlAnchor *anchor, int x, int y, int step, int n, f
 static void begin_limb(FlAnchor *limb, const FlAnchor *region, FlPoint middle)
 {
     const FlPoint rest = at_rest(region, middle);
-    *limb = (FlAnchor){within(middle.x), within(middle.y), region->cosine, region->sine,
-                       within(rest.x),   within(rest.y),   region->axis,   region->side};
+    *limb = *region;
+    limb->x = within(middle.x), limb->y = within(middle.y);
+    limb->rest_x = within(rest.x), limb->rest_y = within(rest.y);
 }
 
 /* Returns: true if a limb has moved from the place that its region's motion gives it. */
@@ -392,7 +406,7 @@ static void follow(Follower *f, int t, const GArray *parts, FlAnchor *anchor, GA
     }
     for (int r = 0; r < f->n_regions; r++) {
         begin(&f->region[r], &anchor[r]);
-        move(&anchor[r], &f->region[r].fit);
+        move(&anchor[r], &f->region[r].fit, &f->region[r].way);
     }
     FL_EACH (const FlSurveyPart, part, parts)
         if (part->region >= 0)
