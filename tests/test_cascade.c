@@ -231,7 +231,7 @@ static void values_become_those_of_svg_1(void)
         {"font-size='9' style='font:20px serif;stroke-width:2em'", "stroke-width", "40"},
         {"style='font:20px serif;font-size:9px;stroke-width:2em'", "stroke-width", "18"},
         {"style='font-size:0'", "font-size", "0"},
-        {"style='filter:drop-shadow(red)'", "filter", "drop-shadow(red)"},
+        {"style='filter:drop-shadow(red)'", "filter", "none"},
         {"style='filter:drop-shadow(1px 2px red)'", "filter", "url(#fl-filter-0)"},
         {"style='filter:blur(1px) invert(1)'", "filter", "url(#fl-filter-0) url(#fl-filter-1)"},
         {"style='mask:url(#m) luminance'", "mask", "url(#m)"},
@@ -585,6 +585,32 @@ static void a_frame_of_the_page_is_told(void)
     }
 }
 
+static void values_of_another_kind_are_left_out(void)
+{
+    static const char *const values[][3] = {
+        {"<path id='a' style='opacity:.5px'/>", "opacity", ""},
+        {"<path id='a' style='stroke-width:-2px'/>", "stroke-width", ""},
+        {"<path id='a' style='stroke-width:calc(1px + 2)'/>", "stroke-width", ""},
+        {"<path id='a' style='stroke-width:calc(6px / 2px * 1px)'/>", "stroke-width", "3"},
+        {"<path id='a' style='stroke-width:calc(10% + 1px)'/>", "stroke-width", "11"},
+        {"<path id='a' style='filter:blur(3)'/>", "filter", "none"},
+        {"<path id='a' style='filter:hue-rotate(90)'/>", "filter", "none"},
+        {"<path id='a' d='M0 0h9v9' style='clip-path:inset(5)'/>", "clip-path", ""},
+        {"<path id='a' style='transform-origin:10px 10;transform:scale(2)'/>", "transform",
+         "matrix(2, 0, 0, 2, 0, 0)"},
+        {"<path id='a' style='transform:scale(1.2,)'/>", "transform", ""},
+        {"<path id='a' transform='rotate(30'/>", "transform", ""},
+        {"<path id='a' transform='rotate(30),'/>", "transform", ""},
+        {"<path id='a' transform='rotate(30),scale(2)'/>", "transform", "rotate(30),scale(2)"},
+        {"<path id='a' transform='skewx(30)'/>", "transform", ""},
+        {"<style>rect{width:40}</style><rect id='a' width='9'/>", "width", "9"},
+        {"<rect id='a' style='width:40' width='9'/>", "width", "40"},
+        {"<style>rect{x:40}</style><rect id='a'/>", "x", "40"},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(values); i++)
+        assert_value(values[i][0], values[i][1], values[i][2]);
+}
+
 static void each_kind_that_is_left_out_is_told_once(void)
 {
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
@@ -704,6 +730,7 @@ int main(int argc, char **argv)
     TEST(images_keep_their_shape);
     TEST(gaps_of_librsvg_are_filled);
     TEST(a_frame_of_the_page_is_told);
+    TEST(values_of_another_kind_are_left_out);
     TEST(each_kind_that_is_left_out_is_told_once);
     TEST(turned_blurs_beyond_the_bound_are_told);
     TEST(values_that_librsvg_leaves_out_are_told);

@@ -34,6 +34,7 @@ typedef struct Cascade {
     GHashTable *copies; // <use> -> what it shows
     int n_clips;
     bool has_text;
+    bool bare; // the declarations are those of an attribute, which browsers read as of old
 } Cascade;
 
 /** A declared value that won. */
@@ -125,7 +126,7 @@ static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d)
     }
     if (strcmp(name, "animation-timeline") == 0 && strchr(d->value, '('))
         warn(c, name, d->value, "needs a page that scrolls");
-    if (property && !fl_css_is_valid(property, d->value)) {
+    if (property && !fl_css_is_valid(property, d->value, c->bare)) {
         warn_of_value(c, property, d->value);
         return;
     }
@@ -202,7 +203,9 @@ static GArray *declared_values(Cascade *c, const xmlNode *node, const xmlNode *s
         for (guint i = 0; i < matched->len; i++)
             declare_all(c, values, g_array_index(matched, const FlCssRule *, i)->declarations,
                         important);
+        c->bare = true;
         declare_all(c, values, own, important);
+        c->bare = false;
     }
     return values;
 }
@@ -299,7 +302,7 @@ static char *compute(Cascade *c, const char *name, const FlCssProperty *property
     const bool variable = strstr(text, "var(") || strstr(text, "env(");
     g_autofree char *substituted = variable ? fl_css_substitute(text, find_variable, style) : NULL;
     const char *value = !variable ? text : substituted ? g_strstrip(substituted) : "unset";
-    if (variable && substituted && !fl_css_is_valid(property, value)) {
+    if (variable && substituted && !fl_css_is_valid(property, value, false)) {
         warn_of_value(c, property, value);
         value = "unset";
     }
@@ -460,11 +463,11 @@ static void compute_attributes(Cascade *c, xmlNode *node, const Style *style)
             continue; // fill="freeze"
         g_autofree char *trimmed =
             g_strstrip(strstr(text, "/*") ? fl_css_without_comments(text) : g_strdup(text));
-        if (!fl_css_is_valid(property, trimmed)) {
+        if (!fl_css_is_valid(property, trimmed, true)) {
             warn_of_value(c, property, trimmed);
-            if (property->kind == FL_CSS_PAINT) // "#c00 icc-color(x)", which browsers leave out
-                fl_set_attribute(node, name, NULL);
-            continue; // librsvg decides
+            if (property->kind == FL_CSS_PAINT || property->kind == FL_CSS_GEOMETRY)
+                fl_set_attribute(node, name, NULL); // as browsers do
+            continue;                               // librsvg decides
         }
         g_autofree char *value = compute(c, name, property, trimmed, style);
         if (strcmp(value, text) != 0)
@@ -680,8 +683,8 @@ bool fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFil
     g_autoptr(GHashTable) copies = fl_uses_copy(doc, path, error);
     if (!copies)
         return false;
-    Cascade c = {path, number,  warnings, sheet,  rules, {0},
-                 said, seconds, length,   copies, 0,     false};
+    Cascade c = {path,    number, warnings, sheet, rules, {0},  said,
+                 seconds, length, copies,   0,     false, false};
     visit(&c, root,
           &(Style){
               .variables = sheet->initial, .own = sheet->own, .units = units, .colour = "black"});

@@ -152,7 +152,7 @@ static bool test_support(const void *data, const char *text)
     if (!colon || !known || known->kind == FL_CSS_IGNORED)
         return colon && (known || g_str_has_prefix(property, "--")) &&
                !g_str_has_prefix(property, "-m"); // -moz-, -ms-
-    return fl_css_is_valid(known, fl_css_space(colon + 1));
+    return fl_css_is_valid(known, fl_css_space(colon + 1), false);
 }
 
 bool fl_css_supports(const char *condition)

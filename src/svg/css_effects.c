@@ -124,7 +124,7 @@ static bool multiply_offset(FlAffine *all, GHashTable *effects, const FlCssUnits
     g_autoptr(FlOutlines) shape = fl_css_basic_shape(path, units, page, &evenodd);
     const double whole = shape ? fl_css_walk_along(shape, INFINITY, &at, &direction) : 0;
     if (!shape || shape->n_cubics == 0 ||
-        !fl_css_number(distance ? distance : "0", units, whole, &along))
+        !fl_css_amount(distance ? distance : "0", FL_CSS_SIZE | FL_CSS_SHARE, units, whole, &along))
         return false;
     if (shape->subpath[0].closed && whole > 0)
         along -= whole * floor(along / whole);
@@ -136,7 +136,7 @@ static bool multiply_offset(FlAffine *all, GHashTable *effects, const FlCssUnits
         double extra = reverse ? 180 : 0;
         if (reverse || strcmp(part[i], "auto") == 0)
             follows = true;
-        else if (!fl_css_number(part[i], units, 360, &extra))
+        else if (!fl_css_amount(part[i], FL_CSS_ANGLE, units, 360, &extra))
             return false;
         angle += extra;
     }
@@ -162,6 +162,11 @@ static const char *apply_transform(GHashTable *effects, xmlNode *node, const FlC
                            : "transform";
     g_autofree char *origin_text = value_or_attribute(effects, node, "transform-origin");
     const char *attribute = css ? NULL : fl_attribute(node, name);
+    FlAffine own = FL_AFFINE_NONE;
+    if (attribute && !fl_affine_parse(attribute, &own)) { // no browser moves it
+        fl_set_attribute(node, name, NULL);
+        attribute = NULL;
+    }
     const char *translate = value_of(effects, "translate"), *rotate = value_of(effects, "rotate");
     const char *scale = value_of(effects, "scale");
     const bool moves = css || translate || rotate || scale || value_of(effects, "offset-path") ||
@@ -174,12 +179,12 @@ static const char *apply_transform(GHashTable *effects, xmlNode *node, const FlC
     const FlCssBox box = reference_box(effects, node, units, &known);
     FlCssUnits in_box = *units;
     in_box.width = box.width, in_box.height = box.height;
+    in_box.bare = !get(effects, "transform-origin");
     FlPoint origin = {box.x, box.y};
     const bool bad_origin = origin_text && !fl_css_position(origin_text, &in_box, box, &origin);
-    FlAffine all = {1, 0, 0, 1, origin.x, origin.y}, own = FL_AFFINE_NONE;
+    in_box.bare = false;
+    FlAffine all = {1, 0, 0, 1, origin.x, origin.y};
     const FlAffine back = {1, 0, 0, 1, -origin.x, -origin.y};
-    if (attribute && !fl_affine_parse(attribute, &own))
-        return NULL; // librsvg decides
     if (css && *css && !fl_affine_parse_css(css, &in_box, &own, &flat))
         return "transform";
     if (!multiply_property(&all, "translate", translate, &in_box))
@@ -332,7 +337,7 @@ static xmlNode *add_shadow(xmlNode *filter, const char *arguments, const FlCssUn
     int n = 0;
     for (int i = 0; part[i]; i++) {
         double v;
-        if (n < 3 && fl_css_number(part[i], units, 0, &v))
+        if (n < 3 && fl_css_amount(part[i], FL_CSS_SIZE, units, 0, &v))
             fl_set_numbers(shadow, names[n++], &v, 1);
         else
             word = part[i];
@@ -352,7 +357,10 @@ static char *add_filter(xmlNode *node, const char *function, const FlCssUnits *u
     if (!fl_css_call(function, &name, &arguments))
         return NULL;
     const bool shadow = strcmp(name, "drop-shadow") == 0;
-    if (*arguments && !shadow && !fl_css_number(arguments, units, 1, &v))
+    const int kinds = strcmp(name, "blur") == 0         ? FL_CSS_SIZE
+                      : strcmp(name, "hue-rotate") == 0 ? FL_CSS_ANGLE
+                                                        : FL_CSS_PLAIN | FL_CSS_SHARE;
+    if (*arguments && !shadow && !fl_css_amount(arguments, kinds, units, 1, &v))
         return NULL;
     g_autofree char *id = g_strdup_printf("fl-filter-%d", *n);
     xmlNode *filter = add_child(xmlDocGetRootElement(node->doc), "filter");
@@ -378,23 +386,28 @@ static char *add_filter(xmlNode *node, const char *function, const FlCssUnits *u
     return g_strdup_printf("url(#%s)", id);
 }
 
-static void apply_filter(GHashTable *effects, xmlNode *node, const FlCssUnits *units, int *n)
+/** Returns: "filter" if it has a function that cannot be read; nothing is filtered then. */
+static const char *apply_filter(GHashTable *effects, xmlNode *node, const FlCssUnits *units, int *n)
 {
     g_autofree char *value = value_or_attribute(effects, node, "filter");
     bool changed = get(effects, "filter") != NULL;
+    bool read = true;
     if (!value && !changed)
-        return;
+        return NULL;
     g_auto(GStrv) part = fl_css_split(value ? value : "", ' ');
     for (int i = 0; part[i]; i++) {
         char *made = add_filter(node, part[i], units, n);
         if (made)
             g_free(part[i]), part[i] = made;
         changed |= made != NULL;
+        read = read && (made || !strchr(part[i], '(') || g_str_has_prefix(part[i], "url(") ||
+                        g_str_has_prefix(part[i], "opacity("));
     }
-    if (!changed)
-        return;
+    if (!changed && read)
+        return NULL;
     g_autofree char *list = g_strjoinv(" ", part);
-    fl_declare(node, "filter:%s", *list ? list : "none");
+    fl_declare(node, "filter:%s", *list && read ? list : "none");
+    return read ? NULL : "filter";
 }
 
 /** The background of the whole page becomes a rectangle below everything. */
@@ -530,7 +543,7 @@ const char *fl_css_effects_apply(GHashTable *effects, xmlNode *node, const FlCss
     const char *transform = apply_transform(effects, node, units);
     const char *background = apply_background(effects, node, units);
     const char *mask = apply_mask(effects, node);
-    apply_filter(effects, node, units, n_clips);
+    const char *filter = apply_filter(effects, node, units, n_clips);
     apply_path_length(node, units);
     apply_light(node);
     fl_set_attribute(node, "transform-origin", NULL);
@@ -541,6 +554,7 @@ const char *fl_css_effects_apply(GHashTable *effects, xmlNode *node, const FlCss
            : clip       ? clip
            : transform  ? transform
            : mask       ? mask
+           : filter     ? filter
            : background ? background
                         : frame_of_page(effects, node);
 }

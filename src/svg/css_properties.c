@@ -52,21 +52,22 @@ const FlCssProperty *fl_css_property_at(int i)
     return i < (int)G_N_ELEMENTS(known) ? &known[i] : NULL;
 }
 
-static bool is_number(const char *value)
+/** Returns: true if a value measures one of `kinds`; `sign`: it may be negative. */
+static bool is_amount(const char *value, int kinds, bool bare, bool sign)
 {
-    const FlCssUnits any = {1, 1, 1, 1, 1, 1};
+    const FlCssUnits any = {1, 1, 1, 1, 1, 1, .bare = bare};
     double number;
-    return fl_css_number(value, &any, 1, &number);
+    return fl_css_amount(value, kinds, &any, 1, &number) && (sign || *value != '-' || number == 0);
 }
 
-static bool is_numbers(const char *value)
+static bool is_amounts(const char *value)
 {
     g_auto(GStrv) comma = fl_css_split(value, ',');
     bool good = comma[0] != NULL;
     for (int i = 0; comma[i] && good; i++) {
         g_auto(GStrv) part = fl_css_split(comma[i], ' ');
         for (int k = 0; part[k] && good; k++)
-            good = is_number(part[k]);
+            good = is_amount(part[k], FL_CSS_SIZE | FL_CSS_SHARE, true, false);
     }
     return good;
 }
@@ -86,7 +87,7 @@ char *fl_css_word(const FlCssProperty *property, const char *value)
 static bool is_nothing(const char *value)
 {
     return fl_css_has_word(value, "none") || fl_css_has_word(value, "light") ||
-           (is_number(value) && g_ascii_strtod(value, NULL) == 0);
+           (is_amount(value, ~0, true, true) && g_ascii_strtod(value, NULL) == 0);
 }
 
 /** Returns: true for several lines at once: "underline overline". */
@@ -101,8 +102,9 @@ static bool is_words(const FlCssProperty *property, const char *value)
     return good;
 }
 
-bool fl_css_is_valid(const FlCssProperty *property, const char *value)
+bool fl_css_is_valid(const FlCssProperty *property, const char *value, bool bare)
 {
+    const char *name = property->name;
     if (!*value)
         return false;
     if (strstr(value, "var(") || strstr(value, "env(") ||
@@ -112,8 +114,7 @@ bool fl_css_is_valid(const FlCssProperty *property, const char *value)
         property->kind == FL_CSS_PAINT ? fl_css_colour_with(value, "black") : NULL;
     g_autofree char *word = fl_css_word(property, value);
     if (word || (property->words && property->kind == FL_CSS_TEXT))
-        return word ||
-               (strcmp(property->name, "text-decoration") == 0 && is_words(property, value));
+        return word || (strcmp(name, "text-decoration") == 0 && is_words(property, value));
     if (fl_css_has_word("auto none normal", value))
         return true;
     switch (property->kind) {
@@ -122,13 +123,17 @@ bool fl_css_is_valid(const FlCssProperty *property, const char *value)
     case FL_CSS_ABSENT:
         return is_nothing(value);
     case FL_CSS_TRANSFORM:
-        return strcmp(property->name, "offset") != 0; // a shorthand; <stop> has it as attribute
+        return strcmp(name, "offset") != 0; // a shorthand; <stop> has it as attribute
     case FL_CSS_NUMBER:
+        return is_amount(value, FL_CSS_PLAIN | FL_CSS_SHARE, false, true);
     case FL_CSS_GEOMETRY:
     case FL_CSS_LENGTH:
-        return is_number(value);
+        return is_amount(value, FL_CSS_SIZE | FL_CSS_SHARE,
+                         (bare && !strchr(value, '(')) ||
+                             !fl_css_has_word("width height font-size letter-spacing", name),
+                         !fl_css_has_word("width height r rx ry font-size stroke-width", name));
     case FL_CSS_LENGTHS:
-        return is_numbers(value);
+        return is_amounts(value);
     default:
         return true;
     }

@@ -36,5 +36,8 @@ const FlCssProperty *fl_css_property_at(int i);
  * word. */
 char *fl_css_word(const FlCssProperty *property, const char *value);
 
-/** Returns: true if `value` can be one of the property, or is one for all properties. */
-bool fl_css_is_valid(const FlCssProperty *property, const char *value);
+/**
+ * Returns: true if `value` can be one of the property, or is one for all properties. Lengths that
+ * HTML has as well need a unit, but in an attribute (`bare`).
+ */
+bool fl_css_is_valid(const FlCssProperty *property, const char *value, bool bare);

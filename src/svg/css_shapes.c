@@ -190,7 +190,8 @@ bool fl_css_position(const char *text, const FlCssUnits *units, FlCssBox box, Fl
         for (size_t i = 0; i < G_N_ELEMENTS(words); i++)
             if (strcmp(words[i][0], axis[k]) == 0)
                 axis[k] = words[i][1];
-        if (!fl_css_number(axis[k], units, k ? box.height : box.width, &v[k]))
+        if (!fl_css_amount(axis[k], FL_CSS_SIZE | FL_CSS_SHARE, units, k ? box.height : box.width,
+                           &v[k]))
             return false;
     }
     *place = (FlPoint){box.x + v[0], box.y + v[1]};
@@ -206,7 +207,7 @@ static bool read_radius(const char *text, const FlCssUnits *units, double whole,
     else if (strcmp(text, "farthest-side") == 0)
         *radius = MAX(fabs(low), fabs(high));
     else
-        return fl_css_number(text, units, whole, radius);
+        return fl_css_amount(text, FL_CSS_SIZE | FL_CSS_SHARE, units, whole, radius);
     return true;
 }
 
@@ -271,7 +272,7 @@ static bool read_four(char **part, const FlCssUnits *units, const double whole[4
         const char *text = part[from[n][i]];
         if (strcmp(text, "auto") == 0)
             v[i] = i == 1 || i == 2 ? whole[i] : 0;
-        else if (!fl_css_number(text, units, whole[i], &v[i]))
+        else if (!fl_css_amount(text, FL_CSS_SIZE | FL_CSS_SHARE, units, whole[i], &v[i]))
             return false;
     }
     return true;

@@ -72,11 +72,12 @@ typedef struct Calc {
     const FlCssUnits *units;
     double whole;
     int depth;
+    int *kind; // of what was read last; 0: a word
 } Calc;
 
 static bool read_sum(const Calc *calc, const char **s, double *value);
 
-/** The factor of a unit of n bytes; 0 if it is unknown. */
+/** The factor of a unit of n bytes, and what it measures; 0 if it is unknown. */
 static double unit_factor(const Calc *calc, const char *unit, size_t n)
 {
     const FlCssUnits *u = calc->units;
@@ -84,9 +85,10 @@ static double unit_factor(const Calc *calc, const char *unit, size_t n)
     const struct {
         const char *name;
         double factor;
+        int kind; // 0: a length
     } known[] = {
         {"px", 1},
-        {"%", calc->whole / 100},
+        {"%", calc->whole / 100, FL_CSS_SHARE},
         {"em", u->font_size},
         {"rem", u->root_font_size},
         {"ex", u->font_size / 2},
@@ -104,30 +106,44 @@ static double unit_factor(const Calc *calc, const char *unit, size_t n)
         {"q", inch / 101.6},
         {"pt", inch / 72},
         {"pc", inch / 6},
-        {"deg", 1},
-        {"rad", 180 / G_PI},
-        {"grad", 0.9},
-        {"turn", 360},
-        {"s", 1},
-        {"ms", 0.001},
-        {"dppx", 1},
-        {"x", 1},
-        {"fr", 1},
+        {"deg", 1, FL_CSS_ANGLE},
+        {"rad", 180 / G_PI, FL_CSS_ANGLE},
+        {"grad", 0.9, FL_CSS_ANGLE},
+        {"turn", 360, FL_CSS_ANGLE},
+        {"s", 1, FL_CSS_OTHER},
+        {"ms", 0.001, FL_CSS_OTHER},
+        {"dppx", 1, FL_CSS_OTHER},
+        {"x", 1, FL_CSS_OTHER},
+        {"fr", 1, FL_CSS_OTHER},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(known); i++)
-        if (strlen(known[i].name) == n && g_ascii_strncasecmp(known[i].name, unit, n) == 0)
+        if (strlen(known[i].name) == n && g_ascii_strncasecmp(known[i].name, unit, n) == 0) {
+            *calc->kind = known[i].kind ? known[i].kind : FL_CSS_SIZE;
             return known[i].factor;
+        }
+    *calc->kind = 0;
     // svw, lvh, dvmin … are the same on a page without bars
     return n > 2 && strchr("sldSLD", *unit) && unit[1] == 'v' ? unit_factor(calc, unit + 1, n - 1)
                                                               : 0;
 }
 
+/** Returns: false if two values cannot be added; percentages can, to lengths and to numbers. */
+static bool join_kinds(int *kind, int other)
+{
+    const int all = *kind | other;
+    if (*kind && other && *kind != other && all != (FL_CSS_SIZE | FL_CSS_SHARE) &&
+        all != (FL_CSS_PLAIN | FL_CSS_SHARE))
+        return false;
+    *kind = all & FL_CSS_SIZE ? FL_CSS_SIZE : all & FL_CSS_SHARE ? FL_CSS_SHARE : all;
+    return true;
+}
+
 /** Reads comma-separated arguments up to the bracket; their number, -1 if they are wrong. */
 static int read_arguments(const Calc *calc, const char **s, double *values, int most)
 {
-    int n = 0;
+    int n = 0, kind = 0;
     for (*s = fl_css_space(*s); **s && **s != ')'; *s = fl_css_space(*s)) {
-        if (n == most || !read_sum(calc, s, &values[n++]))
+        if (n == most || !read_sum(calc, s, &values[n++]) || !join_kinds(&kind, *calc->kind))
             return -1;
         *s = fl_css_space(*s);
         if (**s == ',')
@@ -138,6 +154,7 @@ static int read_arguments(const Calc *calc, const char **s, double *values, int 
     if (**s != ')')
         return -1;
     (*s)++;
+    *calc->kind = kind;
     return n;
 }
 
@@ -210,17 +227,20 @@ static bool read_call(const Calc *calc, const char **s, double *value)
     double v[8];
     const size_t n = fl_css_identifier(*s);
     g_autofree char *name = n ? g_ascii_strdown(*s, (gssize)n) : g_strdup("calc");
-    const Calc inner = {calc->units, calc->whole, calc->depth + 1};
+    const Calc inner = {calc->units, calc->whole, calc->depth + 1, calc->kind};
     *s += n;
     if (**s != '(') {
         static const char *const ways[] = {"nearest", "up", "down", "to-zero"}; // of round()
         *value = strcmp(name, "pi") == 0 ? G_PI : strcmp(name, "e") == 0 ? G_E : NAN;
+        *calc->kind = isfinite(*value) ? FL_CSS_PLAIN : 0;
         for (size_t i = 0; calc->depth > 0 && i < G_N_ELEMENTS(ways); i++)
             *value = strcmp(name, ways[i]) == 0 ? (double)i : *value;
         return isfinite(*value);
     }
     (*s)++;
     const int count = calc->depth < MOST_NESTED ? read_arguments(&inner, s, v, 8) : -1;
+    if (fl_css_has_word("sign sin cos tan sqrt pow exp", name))
+        *calc->kind = FL_CSS_PLAIN;
     return count >= 0 && apply(name, v, count, value);
 }
 
@@ -236,10 +256,10 @@ static bool read_term(const Calc *calc, const char **s, double *value)
         return false;
     const size_t n =
         *end == '%' ? 1 : strspn(end, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
-    const double factor = n ? unit_factor(calc, end, n) : 1;
+    *calc->kind = FL_CSS_PLAIN;
+    *value *= n ? unit_factor(calc, end, n) : 1;
     *s = end + n;
-    *value *= factor;
-    return n == 0 || factor != 0 || calc->whole == 0;
+    return *calc->kind;
 }
 
 static bool read_product(const Calc *calc, const char **s, double *value)
@@ -248,11 +268,18 @@ static bool read_product(const Calc *calc, const char **s, double *value)
         return false;
     for (;;) {
         const char *at = fl_css_space(*s);
+        const int kind = *calc->kind;
         double next;
         if (*at != '*' && *at != '/')
             return true;
         *s = at + 1;
         if (!read_term(calc, s, &next))
+            return false;
+        if (*at == '/' && *calc->kind == kind)
+            *calc->kind = FL_CSS_PLAIN;
+        else if (*calc->kind == FL_CSS_PLAIN)
+            *calc->kind = kind;
+        else if (kind != FL_CSS_PLAIN)
             return false;
         *value = *at == '*' ? *value * next : *value / next;
     }
@@ -265,21 +292,33 @@ static bool read_sum(const Calc *calc, const char **s, double *value)
         return false;
     for (;;) {
         const char *at = fl_css_space(*s);
+        int kind = *calc->kind;
         double next;
         if (at == *s || (*at != '+' && *at != '-') || !strchr(FL_CSS_SPACE, at[1]))
             return true;
         *s = at + 1;
-        if (!read_product(calc, s, &next))
+        if (!read_product(calc, s, &next) || !join_kinds(&kind, *calc->kind))
             return false;
+        *calc->kind = kind;
         *value += *at == '+' ? next : -next;
     }
 }
 
+bool fl_css_amount(const char *text, int kinds, const FlCssUnits *units, double whole,
+                   double *value)
+{
+    int kind = 0;
+    const Calc calc = {units, whole, 0, &kind};
+    const char *s = text;
+    if (!read_term(&calc, &s, value) || *fl_css_space(s) || !isfinite(*value))
+        return false;
+    const bool bare = kind == FL_CSS_PLAIN && (kinds & (FL_CSS_SIZE | FL_CSS_ANGLE));
+    return (kind & kinds) || (bare && (units->bare || (*value == 0 && s[-1] != ')')));
+}
+
 bool fl_css_number(const char *text, const FlCssUnits *units, double whole, double *value)
 {
-    const Calc calc = {units, whole, 0};
-    const char *s = text;
-    return read_term(&calc, &s, value) && !*fl_css_space(s) && isfinite(*value);
+    return fl_css_amount(text, ~0, units, whole, value);
 }
 
 char *fl_css_number_text(double value)

@@ -9,7 +9,17 @@ typedef struct FlCssUnits {
     double font_size, root_font_size;
     double page_width, page_height; // of vw and vh
     double dpi;                     // px per inch; 0: 96
+    bool bare;                      // lengths need no unit, as in attributes
 } FlCssUnits;
+
+/** What a value measures. */
+enum {
+    FL_CSS_PLAIN = 1, // a number without unit
+    FL_CSS_SIZE = 2,
+    FL_CSS_SHARE = 4, // %
+    FL_CSS_ANGLE = 8,
+    FL_CSS_OTHER = 16, // a time, a resolution
+};
 
 /** Finds the value of a custom property; NULL: it is not set. */
 typedef const char *FlCssVariable(const void *data, const char *name);
@@ -29,6 +39,11 @@ char *fl_css_substitute(const char *value, FlCssVariable *variable, const void *
  * Returns: false if `text` is anything else or not finite.
  */
 bool fl_css_number(const char *text, const FlCssUnits *units, double whole, double *value);
+
+/** Reads a number that measures one of `kinds`. Returns: false if it is of another kind, but for a
+ * length or an angle of 0. */
+bool fl_css_amount(const char *text, int kinds, const FlCssUnits *units, double whole,
+                   double *value);
 
 /** The text of a number in as few digits as give it back within a millionth; to be freed. */
 char *fl_css_number_text(double value);

@@ -170,8 +170,9 @@ static char *combine(const char *a, const char *b, double wa, double wb, double 
                 out, "%s%s", out->len && g_ascii_isdigit(out->str[out->len - 1]) ? " " : "", text);
             sum += (vb - va) * (vb - va);
             pa += na, pb += nb;
-            const bool only_a = ua > 0 && ub == 0 && vb == 0, only_b = ub > 0 && ua == 0 && va == 0;
-            if (only_a || only_b) { // 0 has any unit
+            const bool only_a = ua > 0 && ub == 0 && (vb == 0 || g_str_has_prefix(pa, "px"));
+            const bool only_b = ub > 0 && ua == 0 && (va == 0 || g_str_has_prefix(pb, "px"));
+            if (only_a || only_b) { // 0 has any unit, a number may be of px
                 g_string_append_len(out, only_a ? pa : pb, (gssize)(only_a ? ua : ub));
                 pa += ua, pb += ub;
             }

@@ -177,7 +177,7 @@ static void set_value(xmlNode *node, const char *name, const char *value)
 {
     const FlCssProperty *property = fl_css_property(name);
     const bool place =
-        property && property->kind == FL_CSS_GEOMETRY && fl_css_is_valid(property, value);
+        property && property->kind == FL_CSS_GEOMETRY && fl_css_is_valid(property, value, true);
     const bool declared = place || (property && property->kind <= FL_CSS_TEXT);
     xmlAttr *foreign = NULL;
     for (xmlAttr *a = node->properties; a; a = a->next)

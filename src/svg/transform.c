@@ -115,21 +115,13 @@ static bool map_of(const char *name, const double *v, int n, Space *space)
 #undef IS
 }
 
-/** Returns: true if the i-th argument of a function of CSS is an angle, a length or a plain number,
- * as the function wants; 0 needs no unit, and results of calc() and the like are not checked. */
-static bool has_right_unit(const char *name, int i, const char *text, double value)
+/** What the i-th argument of a function of CSS measures. */
+static int kinds_of(const char *name, int i)
 {
-    const char last = text[strlen(text) - 1];
-    const bool plain = g_ascii_isdigit(last) || last == '.', turns = strchr("rs", *name);
-    const bool angle = g_str_has_suffix(text, "deg") || g_str_has_suffix(text, "rad") ||
-                       g_str_has_suffix(text, "turn");
-    if (last == ')' || (plain && value == 0))
-        return true;
-    if (g_str_has_prefix(name, "scale"))
-        return plain || last == '%';
-    if (*name == 'm' || (strcmp(name, "rotate3d") == 0 && i < 3))
-        return plain;
-    return !plain && angle == turns;
+    return g_str_has_prefix(name, "scale")                            ? FL_CSS_PLAIN | FL_CSS_SHARE
+           : *name == 'm' || (strcmp(name, "rotate3d") == 0 && i < 3) ? FL_CSS_PLAIN
+           : strchr("rs", *name)                                      ? FL_CSS_ANGLE
+                                                                      : FL_CSS_SIZE | FL_CSS_SHARE;
 }
 
 /** Reads the arguments of a function of CSS: their number, -1 if they are wrong. */
@@ -142,11 +134,10 @@ static int read_arguments(const char *name, const char *text, const FlCssUnits *
         const double whole = !length ? 1 : i == 1 || vertical ? units->height : units->width;
         if (strcmp(part[i], "none") == 0) // perspective(none)
             v[i] = 0;
-        else if (!fl_css_number(part[i], units, whole, &v[i]) ||
-                 !has_right_unit(name, i, part[i], v[i]))
+        else if (!fl_css_amount(part[i], kinds_of(name, i), units, whole, &v[i]))
             return -1;
     }
-    return n <= MOST_ARGUMENTS ? n : -1;
+    return n <= MOST_ARGUMENTS && !g_str_has_suffix(text, ",") ? n : -1;
 }
 
 /** Reads one function and its matrix; units: NULL for those of the attribute. */
@@ -158,7 +149,7 @@ static bool read_function(const char *name, const char *arguments, const FlCssUn
     const int n = units ? read_arguments(lower, arguments, units, v)
                         : fl_numbers_read(arguments, v, MOST_ARGUMENTS);
     return n >= 0 &&
-           (units || fl_css_has_word("matrix translate scale rotate skewx skewy", lower)) &&
+           (units || fl_css_has_word("matrix translate scale rotate skewX skewY", name)) &&
            map_of(lower, v, n, space);
 }
 
@@ -189,7 +180,9 @@ bool fl_affine_parse_css(const char *text, const FlCssUnits *units, FlAffine *m,
         if (!read_function(name, arguments, units, &one))
             return false;
         all = multiply(&all, &one);
-        s = close + 1 + strspn(close + 1, units ? FL_CSS_SPACE : FL_CSS_SPACE ",");
+        s = fl_css_space(close + 1);
+        if (!units && *s == ',' && !*(s = fl_css_space(s + 1)))
+            return false;
     }
     const bool in_plane = flatten(&all, m);
     if (flat)
