@@ -6,6 +6,8 @@
 #include "svg/path_data.h"
 #include <string.h>
 
+#define MANY_STEPS 64 // of a filter
+
 typedef struct Lint {
     const char *path;
     int number;
@@ -226,6 +228,9 @@ static void check_values(const Lint *lint, const xmlNode *node)
     if (fl_is(node, "clipPath") && has_value(node, "clipPathUnits", "objectBoundingBox") &&
         fl_attribute(node, "transform"))
         warn(lint, node, "the transform of a clip path in units of the box is applied in the box");
+    const char *id = fl_is(node, "filter") ? fl_attribute(node, "id") : NULL;
+    if (id && xmlChildElementCount((xmlNode *)node) > MANY_STEPS && !g_str_has_prefix(id, "fl-"))
+        warn(lint, node, "a filter of so many steps is drawn in other colours or not at all");
     if (fl_is(node, "feTurbulence") && has_value(node, "stitchTiles", "stitch"))
         warn(lint, node, "stitchTiles is left out: the texture is another one");
     g_autofree char *shown = fl_is(node, "feImage") ? fl_href(node) : NULL;

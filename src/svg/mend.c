@@ -162,18 +162,112 @@ static void mend_blend(const Mend *m, xmlNode *node)
 
 /* ---- numbers of filters ---------------------------------------------------------------------- */
 
-/** Drops numbers that cannot be read, for which librsvg would leave out all that is filtered. */
-static void mend_numbers(xmlNode *step)
+/** The words of an attribute that filters and paints have; NULL of others. */
+static const char *words_of(const char *name)
 {
-    static const char *const names[] = {"dx",           "dy",     "scale",        "surfaceScale",
-                                        "stdDeviation", "radius", "baseFrequency"};
-    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
-        const char *text = fl_attribute(step, names[i]);
-        const char *s = text;
-        const bool signless = i >= 4;
-        if (s && (!*s || s[strspn(s, "0123456789+-.eE ,\t\r\n")] || (signless && *s == '-')))
-            fl_set_attribute(step, names[i], NULL);
+    static const char *const known[][2] = {
+        {"type", "matrix saturate hueRotate luminanceToAlpha fractalNoise turbulence identity "
+                 "table discrete linear gamma"},
+        {"operator", "over in out atop xor arithmetic lighter erode dilate"},
+        {"mode", "normal multiply screen overlay darken lighten color-dodge color-burn hard-light "
+                 "soft-light difference exclusion hue saturation color luminosity"},
+        {"edgeMode", "duplicate wrap none"},
+        {"xChannelSelector", "R G B A"},
+        {"yChannelSelector", "R G B A"},
+        {"spreadMethod", "pad reflect repeat"},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(known); i++)
+        if (strcmp(known[i][0], name) == 0)
+            return known[i][1];
+    return g_str_has_suffix(name, "Units") ? "userSpaceOnUse objectBoundingBox strokeWidth" : NULL;
+}
+
+/** How many numbers an attribute of a filter step has at most; 0: others than numbers. */
+static int most_numbers(const xmlNode *step, const char *name)
+{
+    const char *type = fl_attribute(step, "type");
+    if (strcmp(name, "values") == 0)
+        return type && fl_css_has_word("saturate hueRotate", type) ? 1 : 20;
+    return fl_css_has_word("stdDeviation radius baseFrequency order", name)
+               ? 2
+               : fl_css_has_word("dx dy scale surfaceScale k1 k2 k3 k4 slope intercept amplitude "
+                                 "exponent azimuth elevation z pointsAtX pointsAtY pointsAtZ "
+                                 "specularExponent specularConstant limitingConeAngle "
+                                 "diffuseConstant divisor bias numOctaves targetX targetY seed",
+                                 name);
+}
+
+/** Drops numbers that cannot be read; negative ones become 0 where they mean nothing. */
+static void mend_numbers(xmlNode *step, const char *name, const char *text, int most)
+{
+    double v[20], least = 0;
+    g_autofree char *list = g_strchomp(g_strdup(text));
+    if (g_str_has_suffix(list, ",")) // which browsers let pass
+        list[strlen(list) - 1] = '\0';
+    const int n = fl_numbers_read(list, v, most);
+    for (int i = 0; i < n; i++)
+        least = MIN(least, v[i]), v[i] = MAX(v[i], 0);
+    const bool whole = fl_css_has_word("order numOctaves targetX targetY", name);
+    if (n < 1 || (most == 20 && n < most) || (whole && strchr(text, '.')) ||
+        (least < 0 && strcmp(name, "baseFrequency") == 0))
+        fl_set_attribute(step, name, NULL);
+    else if (least < 0 &&
+             fl_css_has_word("stdDeviation radius diffuseConstant specularConstant", name))
+        fl_set_numbers(step, name, v, n);
+}
+
+/** Drops values that no browser knows, for which librsvg would leave out all that is painted or
+ * filtered. */
+static void mend_values(xmlNode *node)
+{
+    const bool step = g_str_has_prefix((const char *)node->name, "fe");
+    for (xmlAttr *a = node->properties, *next; a; a = next) {
+        const char *name = (const char *)a->name, *text = fl_attribute(node, name);
+        const char *words = words_of(name);
+        const int most = step && text ? most_numbers(node, name) : 0;
+        next = a->next;
+        if (text && *text == '-' && fl_css_has_word("width height", name))
+            fl_set_attribute(node, name, "0"); // nothing shows
+        else if (most > 0)
+            mend_numbers(node, name, text, most);
+        else if (text && words && !fl_css_has_word(words, text))
+            fl_set_attribute(node, name, NULL);
     }
+}
+
+/** librsvg moves only what is in the step's own region: another step moves before it is cut. */
+static void mend_offset(xmlNode *step)
+{
+    static const char *const region[] = {"x", "y", "width", "height"};
+    static const double none = 0;
+    bool cut = false;
+    for (size_t i = 0; i < G_N_ELEMENTS(region); i++)
+        cut |= fl_attribute(step, region[i]) != NULL;
+    if (!cut)
+        return;
+    xmlNode *move = xmlAddPrevSibling(step, xmlCopyNode(step, 2));
+    for (size_t i = 0; i < G_N_ELEMENTS(region); i++)
+        fl_set_attribute(move, region[i], NULL);
+    fl_set_attribute(move, "result", NULL), fl_set_attribute(move, "id", NULL);
+    fl_set_attribute(step, "in", NULL);
+    fl_set_numbers(step, "dx", &none, 1), fl_set_numbers(step, "dy", &none, 1);
+}
+
+/** librsvg aborts over a tile of less than a pixel, which browsers leave empty. */
+static void mend_tile(xmlNode *step)
+{
+    static const char *const sides[] = {"width", "height"};
+    const FlCssUnits units = {.font_size = 16, .root_font_size = 16};
+    const xmlNode *before = xmlPreviousElementSibling(step);
+    const bool in_box =
+        g_strcmp0(fl_attribute(step->parent, "primitiveUnits"), "objectBoundingBox") == 0;
+    for (int i = 0; before && i < 2; i++)
+        if (fl_attribute(before, sides[i]) &&
+            fl_length_of(before, sides[i], &units, 100) < (in_box ? .005 : .5)) {
+            xmlNodeSetName(step, (const xmlChar *)"feFlood");
+            fl_set_attribute(step, "flood-opacity", "0");
+            fl_set_attribute(step, "in", NULL);
+        }
 }
 
 /** Moves what <feImage> shows to the corner of the step's region, where browsers show it. */
@@ -426,6 +520,21 @@ static bool is_aspect(const char *text)
            (!word[1] || (fl_css_has_word("meet slice", word[1]) && !word[2]));
 }
 
+/** librsvg lacks turns, and drops all attributes of a marker for an angle that it cannot read. */
+static void mend_orient(xmlNode *marker)
+{
+    const char *turn = fl_attribute(marker, "orient");
+    double degrees;
+    if (!turn || fl_css_has_word("auto auto-start-reverse", turn))
+        return;
+    const bool read = !strpbrk(turn, "(DGRT") && fl_css_amount(turn, FL_CSS_PLAIN | FL_CSS_ANGLE,
+                                                               &(FlCssUnits){0}, 0, &degrees);
+    if (read)
+        fl_set_numbers(marker, "orient", &degrees, 1);
+    else
+        fl_set_attribute(marker, "orient", NULL);
+}
+
 static void mend_words(xmlNode *node)
 {
     static const char *const places[] = {"refX", "refY"};
@@ -434,12 +543,11 @@ static void mend_words(xmlNode *node)
         if (text && g_ascii_isalpha(*text)) // "center", for which librsvg drops all attributes
             fl_set_attribute(node, places[i], NULL);
     }
-    const char *turn = fl_is(node, "marker") ? fl_attribute(node, "orient") : NULL;
+    if (fl_is(node, "marker"))
+        mend_orient(node);
     const char *aspect = fl_attribute(node, "preserveAspectRatio");
     const char *view = fl_attribute(node, "viewBox");
-    double degrees, box[4];
-    if (turn && fl_css_number(turn, &(FlCssUnits){0}, 360, &degrees))
-        fl_set_numbers(node, "orient", &degrees, 1); // librsvg lacks turns
+    double box[4];
     if (aspect && !is_aspect(aspect)) // librsvg would hide the element, or know the word "defer"
         fl_set_attribute(node, "preserveAspectRatio", NULL);
     if (view && (fl_numbers_read(view, box, 4) != 4 || box[2] < 0 || box[3] < 0))
@@ -467,10 +575,15 @@ static void mend_words(xmlNode *node)
 
 static void mend(Mend *m, xmlNode *node)
 {
-    if (node->ns && g_str_has_prefix((const char *)node->name, "fe"))
-        mend_numbers(node);
+    if (g_str_has_prefix((const char *)node->name, "fe") ||
+        (fl_is_undrawn(node) && !fl_is_one_of(node, "style script"))) // which have types as well
+        mend_values(node);
     if (fl_is(node, "feDropShadow"))
         mend_shadow(node, m->n_made++);
+    else if (fl_is(node, "feOffset"))
+        mend_offset(node);
+    else if (fl_is(node, "feTile"))
+        mend_tile(node);
     else if (fl_is(node, "feImage"))
         mend_image(node, m->n_made++);
     else if (fl_is(node, "filter"))
