@@ -262,9 +262,12 @@ static void keyframe_clear(void *data)
     g_array_unref(((FlCssKeyframe *)data)->declarations);
 }
 
-/** Reads the block of @keyframes NAME. */
-static void read_keyframes(Reader *reader, const char *name, const char *block)
+/** Reads the block of @keyframes NAME, unless a stronger rule has that name. */
+static void read_keyframes(Reader *reader, const char *name, const char *block, int strength)
 {
+    const GArray *known = g_hash_table_lookup(reader->sheet->keyframes, name);
+    if (known && known->len && g_array_index(known, FlCssKeyframe, 0).strength > strength)
+        return;
     GArray *frames = g_array_new(FALSE, FALSE, sizeof(FlCssKeyframe));
     g_array_set_clear_func(frames, keyframe_clear);
     for (const char *s = fl_css_space(block); *s;) {
@@ -281,7 +284,7 @@ static void read_keyframes(Reader *reader, const char *name, const char *block)
                                  : g_ascii_strcasecmp(key[i], "to") == 0
                                      ? 1
                                      : g_ascii_strtod(key[i], NULL) / 100;
-            const FlCssKeyframe frame = {CLAMP(share, 0, 1), g_array_ref(declarations)};
+            const FlCssKeyframe frame = {CLAMP(share, 0, 1), g_array_ref(declarations), strength};
             g_array_append_val(frames, frame);
         }
         s = fl_css_space(*close ? close + 1 : close);
@@ -412,8 +415,9 @@ static void read_at_rule(Reader *reader, const char *name, const char *prelude, 
                block) {
         g_autofree char *string = fl_css_string_or_url(prelude);
         const char *plain = string ? string : prelude;
-        if (*name != '-' || !g_hash_table_contains(reader->sheet->keyframes, plain))
-            read_keyframes(reader, plain, block);
+        // rules outside of layers win, then those of later layers, then the name without prefix
+        const int layer = place->layer->id ? place->layer->id : INT_MAX / 2;
+        read_keyframes(reader, plain, block, 2 * layer + (*name != '-'));
     } else if (strcmp(name, "property") == 0 && block)
         read_property(reader, prelude, block);
     else if (strcmp(name, "font-face") == 0)

@@ -22,6 +22,7 @@ typedef struct FlCssRule {
 typedef struct FlCssKeyframe {
     double share; // 0 … 1
     GArray *declarations;
+    int strength; // of the rule among those of its name
 } FlCssKeyframe;
 
 /** All sheets of a document. */
