@@ -618,6 +618,11 @@ static void values_of_another_kind_are_left_out(void)
         {"<filter><feColorMatrix id='a' type='hueRotate' values='9'/></filter>", "values", "9"},
         {"<filter><feBlend id='a' mode='nonsense'/></filter>", "mode", ""},
         {"<filter><feBlend id='a' mode='screen'/></filter>", "mode", "screen"},
+        {"<stop id='a' offset='1px'/>", "offset", ""},
+        {"<stop id='a' offset='10%'/>", "offset", "10%"},
+        {"<linearGradient id='a' x1='a' x2='5'/>", "x1", ""},
+        {"<marker id='a' markerWidth='-4'/>", "markerWidth", "0"},
+        {"<path id='a' d='M0 0h9v9z' clip-path='circle(2px)'/>", "clip-path", "url(#fl-clip-0)"},
         {"<filter id='a' filterUnits='nonsense' width='-1'/>", "filterUnits", ""},
         {"<filter id='a' filterUnits='nonsense' width='-1'/>", "width", "0"},
         {"<filter><feOffset id='a' dx='5' width='9'/></filter>", "dx", "0"}, // another moves

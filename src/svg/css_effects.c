@@ -228,7 +228,8 @@ static void add_clip(xmlNode *node, const FlOutlines *outlines, bool evenodd, in
 static const char *apply_clip(GHashTable *effects, xmlNode *node, const FlCssUnits *units,
                               int *n_clips)
 {
-    const char *value = get(effects, "clip-path");
+    const char *css = get(effects, "clip-path"), *attribute = fl_attribute(node, "clip-path");
+    const char *value = css || !attribute || g_str_has_prefix(attribute, "url(") ? css : attribute;
     if (!value)
         return NULL;
     if (!*value || strcmp(value, "none") == 0 || strcmp(value, "inherit") == 0 ||

@@ -225,12 +225,17 @@ static void mend_values(xmlNode *node)
         const char *name = (const char *)a->name, *text = fl_attribute(node, name);
         const char *words = words_of(name);
         const int most = step && text ? most_numbers(node, name) : 0;
+        const bool share = strcmp(name, "offset") == 0;
+        double v;
         next = a->next;
-        if (text && *text == '-' && fl_css_has_word("width height", name))
+        if (text && *text == '-' && fl_css_has_word("width height markerWidth markerHeight", name))
             fl_set_attribute(node, name, "0"); // nothing shows
         else if (most > 0)
             mend_numbers(node, name, text, most);
-        else if (text && words && !fl_css_has_word(words, text))
+        else if (text && (words ? !fl_css_has_word(words, text)
+                                : (share || fl_css_has_word("x1 y1 x2 y2 fx fy fr", name)) &&
+                                      !fl_css_amount(text, share ? FL_CSS_PLAIN | FL_CSS_SHARE : ~0,
+                                                     &(FlCssUnits){0}, 1, &v)))
             fl_set_attribute(node, name, NULL);
     }
 }
@@ -575,7 +580,7 @@ static void mend_words(xmlNode *node)
 
 static void mend(Mend *m, xmlNode *node)
 {
-    if (g_str_has_prefix((const char *)node->name, "fe") ||
+    if (g_str_has_prefix((const char *)node->name, "fe") || fl_is(node, "stop") ||
         (fl_is_undrawn(node) && !fl_is_one_of(node, "style script"))) // which have types as well
         mend_values(node);
     if (fl_is(node, "feDropShadow"))
