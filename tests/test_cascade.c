@@ -625,7 +625,7 @@ static void values_of_another_kind_are_left_out(void)
         {"<path id='a' d='M0 0h9v9z' clip-path='circle(2px)'/>", "clip-path", "url(#fl-clip-0)"},
         {"<filter id='a' filterUnits='nonsense' width='-1'/>", "filterUnits", ""},
         {"<filter id='a' filterUnits='nonsense' width='-1'/>", "width", "0"},
-        {"<filter><feOffset id='a' dx='5' width='9'/></filter>", "dx", "0"}, // another moves
+        {"<filter><feOffset id='a' dx='5' width='9'/></filter>", "dx", ""}, // another moves
         {"<filter><feOffset id='a' dx='5'/></filter>", "dx", "5"},
         {"<filter><feFlood width='.1'/><feTile id='a'/></filter>", "flood-opacity", "0"},
         {"<filter><feFlood width='9'/><feTile id='a'/></filter>", "flood-opacity", ""},

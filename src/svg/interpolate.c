@@ -239,6 +239,9 @@ static char *weighted_sum(const char *a, const char *b, double p, double q)
     if (text || !is_length(a) || !is_length(b))
         return text;
     g_autofree char *wa = fl_css_number_text(p), *wb = fl_css_number_text(q);
+    const bool from_0 = strcmp(a, "0") == 0; // which has any unit
+    if (from_0 || strcmp(b, "0") == 0)
+        return g_strdup_printf("calc((%s) * %s)", from_0 ? b : a, from_0 ? wb : wa);
     return g_strdup_printf("calc((%s) * %s + (%s) * %s)", a, wa, b, wb);
 }
 

@@ -243,19 +243,20 @@ static void mend_values(xmlNode *node)
 /** librsvg moves only what is in the step's own region: another step moves before it is cut. */
 static void mend_offset(xmlNode *step)
 {
-    static const char *const region[] = {"x", "y", "width", "height"};
-    static const double none = 0;
+    static const char *const region[][2] = {
+        {"x", "-1e5"}, {"y", "-1e5"}, {"width", "2e5"}, {"height", "2e5"}};
+    static const char *const dropped[] = {"in", "dx", "dy"};
     bool cut = false;
-    for (size_t i = 0; i < G_N_ELEMENTS(region); i++)
-        cut |= fl_attribute(step, region[i]) != NULL;
+    for (int i = 0; i < 4; i++)
+        cut |= fl_attribute(step, region[i][0]) != NULL;
     if (!cut)
         return;
     xmlNode *move = xmlAddPrevSibling(step, xmlCopyNode(step, 2));
-    for (size_t i = 0; i < G_N_ELEMENTS(region); i++)
-        fl_set_attribute(move, region[i], NULL);
+    for (int i = 0; i < 4; i++)
+        fl_set_attribute(move, region[i][0], region[i][1]);
     fl_set_attribute(move, "result", NULL), fl_set_attribute(move, "id", NULL);
-    fl_set_attribute(step, "in", NULL);
-    fl_set_numbers(step, "dx", &none, 1), fl_set_numbers(step, "dy", &none, 1);
+    for (int i = 0; i < 3; i++)
+        fl_set_attribute(step, dropped[i], NULL);
 }
 
 /** librsvg aborts over a tile of less than a pixel, which browsers leave empty. */
