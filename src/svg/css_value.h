@@ -12,7 +12,7 @@ typedef struct FlCssUnits {
     bool bare;                      // lengths need no unit, as in attributes
 } FlCssUnits;
 
-/** What a value measures. */
+/** Kinds of values. */
 enum {
     FL_CSS_PLAIN = 1, // a number without unit
     FL_CSS_SIZE = 2,

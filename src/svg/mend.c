@@ -182,7 +182,7 @@ static const char *words_of(const char *name)
     return g_str_has_suffix(name, "Units") ? "userSpaceOnUse objectBoundingBox strokeWidth" : NULL;
 }
 
-/** How many numbers an attribute of a filter step has at most; 0: others than numbers. */
+/** The most numbers that an attribute of a filter step has; 0: others than numbers. */
 static int most_numbers(const xmlNode *step, const char *name)
 {
     const char *type = fl_attribute(step, "type");

@@ -115,7 +115,7 @@ static bool map_of(const char *name, const double *v, int n, Space *space)
 #undef IS
 }
 
-/** What the i-th argument of a function of CSS measures. */
+/** The kinds of the i-th argument of a function of CSS. */
 static int kinds_of(const char *name, int i)
 {
     return g_str_has_prefix(name, "scale")                            ? FL_CSS_PLAIN | FL_CSS_SHARE
