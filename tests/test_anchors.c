@@ -172,6 +172,20 @@ static void a_shape_that_is_built_holds_its_anchor(void)
     g_assert_cmpfloat(fabsf(2 * half - built.x), <, 1e-4f);
 }
 
+/* A band that grows and begins again with each round. */
+static void what_begins_again_has_not_shrunk(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < N; t++) {
+        g_autofree char *band =
+            g_strdup_printf("<path fill=\"red\" d=\"M10,20H%dV60H10z\"/>", 30 + 6 * t);
+        add_frame(folder, t, band);
+    }
+    g_autoptr(FlDrawing) drawing = open_film(folder);
+    for (int t = 0; t < N; t++)
+        g_assert_cmpfloat(fl_drawing_drift(drawing, 0, -1, t, true).x, >, 0);
+}
+
 /* A triangle that becomes a square node by node, within the same box. */
 static void an_outline_that_is_drawn_on_holds_its_anchor(void)
 {
@@ -259,6 +273,7 @@ int main(int argc, char **argv)
     TEST("other-nodes-are-no-turn", other_nodes_are_no_turn);
     TEST("a-leaf-that-goes-takes-nothing-along", a_leaf_that_goes_takes_nothing_along);
     TEST("a-shape-that-is-built-holds-its-anchor", a_shape_that_is_built_holds_its_anchor);
+    TEST("what-begins-again-has-not-shrunk", what_begins_again_has_not_shrunk);
     TEST("an-outline-that-is-drawn-on-holds-its-anchor",
          an_outline_that_is_drawn_on_holds_its_anchor);
     TEST("many-shapes-are-followed-where-one-comes-in",

@@ -58,7 +58,7 @@ typedef struct FlAnchor {
     float rest_x, rest_y; // its place in that frame
     float axis;           // direction of the longer side in that frame, degrees; NAN: it is round
     float side;           // of a square as large as the region's shapes, px; the same in all frames
-    float grown_x, grown_y; // way that edges have come by growth since that frame
+    float grows_x, grows_y; // way that edges come by growth into the frame at hand, smoothed
 } FlAnchor;
 
 /** The motion of an anchor and of edges that grow through some frames, px a frame. */

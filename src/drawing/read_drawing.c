@@ -29,7 +29,7 @@ static void halve_anchor(FlAnchor *anchor)
 {
     anchor->x /= 2, anchor->y /= 2, anchor->side /= 2;
     anchor->rest_x /= 2, anchor->rest_y /= 2;
-    anchor->grown_x /= 2, anchor->grown_y /= 2;
+    anchor->grows_x /= 2, anchor->grows_y /= 2;
 }
 
 void fl_drawing_halve(FlDrawing *drawing)
@@ -101,10 +101,9 @@ FlDrift fl_drawing_drift(const FlDrawing *drawing, int region, int ground, int f
         const float share = (float)(DRIFT_FRAMES - k) / all;
         const FlPoint way = way_between(drawing, region, from, (from + 1) % n);
         const FlPoint paper = way_between(drawing, ground, from, (from + 1) % n);
-        const FlAnchor *was = &drawing->frame[from].anchor[region];
-        const FlAnchor *is = &drawing->frame[(from + 1) % n].anchor[region];
-        const float x = (float)(way.x - paper.x) + is->grown_x - was->grown_x;
-        const float y = (float)(way.y - paper.y) + is->grown_y - was->grown_y;
+        const FlAnchor *grown = &drawing->frame[(from + 1) % n].anchor[region];
+        const float x = (float)(way.x - paper.x) + grown->grows_x;
+        const float y = (float)(way.y - paper.y) + grown->grows_y;
         drift.x += share * x, drift.y += share * y, drift.pace += share * hypotf(x, y);
     }
     return drift;

@@ -49,7 +49,6 @@ typedef struct Region {
     Means means;      // as its first frame shows it
     double spread[3]; // of its shapes, each about its own middle: as in FlPose, times the weight
     bool begun;       // true after that frame
-    FlPoint way;      // of growth, smoothed
     bool limbs;       // true if some of its limbs move by themselves
 } Region;
 
@@ -212,11 +211,12 @@ static float within(double px)
     return (float)CLAMP(px, (double)-FL_POSE_MOST_PX, (double)FL_POSE_MOST_PX);
 }
 
-/* way: of growth, smoothed; it goes on. */
-static void move(FlAnchor *anchor, const Fit *fit, FlPoint *way)
+static void move(FlAnchor *anchor, const Fit *fit)
 {
-    if (fit->all.weight <= 0)
+    if (fit->all.weight <= 0) {
+        anchor->grows_x = anchor->grows_y = 0;
         return;
+    }
     const FlPoint from = mean_of(&fit->all, fit->all.from), to = mean_of(&fit->all, fit->all.to);
     const FlPoint turn = turn_of(fit);
     const FlPoint arm = {(double)anchor->x - from.x, (double)anchor->y - from.y};
@@ -225,10 +225,8 @@ static void move(FlAnchor *anchor, const Fit *fit, FlPoint *way)
         unit_of(times(turn, (FlPoint){(double)anchor->cosine, (double)anchor->sine}));
     anchor->x = within(to.x + turned.x), anchor->y = within(to.y + turned.y);
     anchor->cosine = (float)axis.x, anchor->sine = (float)axis.y;
-    way->x += FOLLOWS * (fit->grown.x / fit->all.weight - way->x);
-    way->y += FOLLOWS * (fit->grown.y / fit->all.weight - way->y);
-    anchor->grown_x += within(way->x);
-    anchor->grown_y += within(way->y);
+    anchor->grows_x += (float)FOLLOWS * ((float)(fit->grown.x / fit->all.weight) - anchor->grows_x);
+    anchor->grows_y += (float)FOLLOWS * ((float)(fit->grown.y / fit->all.weight) - anchor->grows_y);
 }
 
 static Leaf *leaf_of(const Follower *f, const FlSurveyPart *part)
@@ -252,7 +250,7 @@ static void note_leaf(Follower *f, int t, const FlSurveyPart *part)
     if (known && leaf->limb) {
         Fit own = {{0}};
         add_leaf(&own, leaf->part, part, keeps_nodes(leaf), f->page);
-        move(&leaf->anchor, &own, &(FlPoint){0});
+        move(&leaf->anchor, &own);
     } else {
         leaf->anchor.cosine = leaf->anchor.sine = 0; // it begins
     }
@@ -406,7 +404,7 @@ static void follow(Follower *f, int t, const GArray *parts, FlAnchor *anchor, GA
     }
     for (int r = 0; r < f->n_regions; r++) {
         begin(&f->region[r], &anchor[r]);
-        move(&anchor[r], &f->region[r].fit, &f->region[r].way);
+        move(&anchor[r], &f->region[r].fit);
     }
     FL_EACH (const FlSurveyPart, part, parts)
         if (part->region >= 0)
