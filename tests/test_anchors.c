@@ -166,7 +166,8 @@ static void a_shape_that_is_built_holds_its_anchor(void)
     g_test_message("its edge drifts by %.2f px a frame", (double)built.x);
     g_assert_cmpfloat(built.x, >, .05f);
     g_assert_cmpfloat(fabsf(built.y), <, .1f * built.x);
-    g_assert_cmpfloat(fl_drawing_drift(drawing, 0, -1, N - 1, false).x, <, built.x);
+    g_assert_cmpfloat(fl_drawing_anchor(drawing, 0, N - 1).grows_x, <,
+                      fl_drawing_anchor(drawing, 0, N / 2).grows_x);
     fl_drawing_halve(drawing);
     const float half = fl_drawing_drift(drawing, 0, -1, N / 2, false).x;
     g_assert_cmpfloat(fabsf(2 * half - built.x), <, 1e-4f);
@@ -184,6 +185,25 @@ static void what_begins_again_has_not_shrunk(void)
     g_autoptr(FlDrawing) drawing = open_film(folder);
     for (int t = 0; t < N; t++)
         g_assert_cmpfloat(fl_drawing_drift(drawing, 0, -1, t, true).x, >, 0);
+}
+
+/* A band that swells twice: no paint is laid the second time. */
+static void what_breathes_does_not_grow(void)
+{
+    static const int end[N] = {30, 36, 42, 48, 42, 36, 42, 48};
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < N; t++) {
+        g_autofree char *band =
+            g_strdup_printf("<path fill=\"red\" d=\"M10,20H%dV60H10z\"/>", end[t]);
+        add_frame(folder, t, band);
+    }
+    g_autoptr(FlDrawing) drawing = open_film(folder);
+    for (int t = 1; t < N; t++) {
+        const float before = fl_drawing_anchor(drawing, 0, t - 1).grows_x;
+        const float now = fl_drawing_anchor(drawing, 0, t).grows_x;
+        g_assert_cmpint(now > before, ==, t <= 3);
+        g_assert_cmpfloat(now, >, 0);
+    }
 }
 
 /* A triangle that becomes a square node by node, within the same box. */
@@ -274,6 +294,7 @@ int main(int argc, char **argv)
     TEST("a-leaf-that-goes-takes-nothing-along", a_leaf_that_goes_takes_nothing_along);
     TEST("a-shape-that-is-built-holds-its-anchor", a_shape_that_is_built_holds_its_anchor);
     TEST("what-begins-again-has-not-shrunk", what_begins_again_has_not_shrunk);
+    TEST("what-breathes-does-not-grow", what_breathes_does_not_grow);
     TEST("an-outline-that-is-drawn-on-holds-its-anchor",
          an_outline_that_is_drawn_on_holds_its_anchor);
     TEST("many-shapes-are-followed-where-one-comes-in",

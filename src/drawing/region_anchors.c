@@ -21,8 +21,9 @@ typedef struct Leaf {
     const FlSurveyPart *part; // last seen; NULL: not yet
     int frame;                // of that
     int steps, same;          // times it is seen again; of these with as many nodes
-    bool shared; // two leaves have its number, since regions were merged: the number is ambiguous
-    double area; // sum over the frames
+    bool shared;   // two leaves have its number, since regions were merged: the number is ambiguous
+    double area;   // sum over the frames
+    float largest; // of its areas so far
     bool limb;
     FlAnchor anchor; // of a limb
 } Leaf;
@@ -155,21 +156,29 @@ static bool stays(const FlSurveyPart *before, const FlSurveyPart *now, const flo
            has_grown(now->box, before->box, page);
 }
 
-/* steady: its nodes are the same ones where they are as many. */
-static void add_leaf(Fit *fit, const FlSurveyPart *before, const FlSurveyPart *now, bool steady,
-                     const float page[2])
+/* True if a leaf has the same nodes in nearly all frames. If it is traced anew in each, as many
+ * nodes are chance, and begin anywhere. */
+static bool keeps_nodes(const Leaf *leaf)
 {
+    return STEADY * leaf->same >= (STEADY - 1) * leaf->steps;
+}
+
+static void add_leaf(Fit *fit, const Leaf *leaf, const FlSurveyPart *now, const float page[2])
+{
+    const FlSurveyPart *before = leaf->part;
     const FlPose *a = &before->pose, *b = &now->pose;
     const double weight = MIN(weight_of(before), weight_of(now));
     if (stays(before, now, page)) {
         const FlPoint from = middle_of(before, false), to = middle_of(now, false);
         add_means(&fit->all, weight, from, from);
+        if (now->area_px <= leaf->largest)
+            return; // it lays no paint where there was none
         const FlPoint way = {2 * (to.x - from.x), 2 * (to.y - from.y)}; // one side is held
         const double most = GROWS * (double)MAX(page[0], page[1]), length = hypot(way.x, way.y);
         add(&fit->grown, weight * MIN(1, most / MAX(length, 1e-6)), way);
         return;
     }
-    if (!steady || a->n == 0 || a->n != b->n) {
+    if (!keeps_nodes(leaf) || a->n == 0 || a->n != b->n) {
         const bool known = a->n > 0 && b->n > 0;
         add_means(&fit->all, weight, middle_of(before, known), middle_of(now, known));
         return;
@@ -234,27 +243,21 @@ static Leaf *leaf_of(const Follower *f, const FlSurveyPart *part)
     return &f->leaf[f->region[part->region].first + part->nth];
 }
 
-/* True if a leaf has the same nodes in nearly all frames. If it is traced anew in each, as many
- * nodes are chance, and begin anywhere. */
-static bool keeps_nodes(const Leaf *leaf)
-{
-    return STEADY * leaf->same >= (STEADY - 1) * leaf->steps;
-}
-
 static void note_leaf(Follower *f, int t, const FlSurveyPart *part)
 {
     Leaf *leaf = leaf_of(f, part);
     const bool known = !leaf->shared && leaf->part && leaf->frame == t - 1;
     if (known)
-        add_leaf(&f->region[part->region].fit, leaf->part, part, keeps_nodes(leaf), f->page);
+        add_leaf(&f->region[part->region].fit, leaf, part, f->page);
     if (known && leaf->limb) {
         Fit own = {{0}};
-        add_leaf(&own, leaf->part, part, keeps_nodes(leaf), f->page);
+        add_leaf(&own, leaf, part, f->page);
         move(&leaf->anchor, &own);
     } else {
         leaf->anchor.cosine = leaf->anchor.sine = 0; // it begins
     }
     leaf->part = part, leaf->frame = t;
+    leaf->largest = MAX(leaf->largest, part->area_px);
 }
 
 /* Finds out beforehand how steady a leaf is. */
