@@ -51,6 +51,7 @@ static void numbers_lie_between(void)
         {"#000", "#fff", .5, "rgba(128, 128, 128, 1)"},
         {"red", "rgba(0, 0, 255, 0)", .5, "rgba(255, 0, 0, 0.5)"},
         {"10px", "50%", .5, "calc((10px) * 0.5 + (50%) * 0.5)"},
+        {"10", "2em", .5, "calc((10) * 0.5 * 1px + (2em) * 0.5)"},
         {"inset(0 0 4px)", "inset(0 80% 0)", .5, "inset(0 40% 2px)"},
         {"oklch(60% .2 30)", "oklch(60% .2 210)", .5, "rgb(128, 128, 128)"},
         {"visible", "hidden", .5, NULL},
@@ -255,6 +256,10 @@ static void css_has_its_values(void)
     assert_at(ADDED("x:10px}}#a{animation-timing-function:linear;x:5px"), 0, "x", "5px");
     assert_at(ADDED("x:10px}}#a{x:5px"), .999999, "x", "15px");
     assert_at(ADDED("x:10px}}#a{x:5%"), .999999, "x", "15");
+    assert_at(ADDED("x:1em}}#a{x:5"), .999999, "x", "21");
+    assert_at(
+        CSS("@keyframes k{from{rotate:0}to{rotate:calc(1turn / 2)}}#a{animation:k 1s linear}"), .5,
+        "transform", "matrix(0, 1, -1, 0, 0, 0)");
     assert_at(CSS("@keyframes k{to{x:9px}}#a{x:4px;animation:k 1s;animation-timeline:scroll()}"),
               .5, "x", "4px");
     assert_at(CSS("@keyframes k{0%{display:none}}#a{animation:k 1s linear}"), .1, "display",

@@ -170,9 +170,8 @@ static char *combine(const char *a, const char *b, double wa, double wb, double 
                 out, "%s%s", out->len && g_ascii_isdigit(out->str[out->len - 1]) ? " " : "", text);
             sum += (vb - va) * (vb - va);
             pa += na, pb += nb;
-            const bool only_a = ua > 0 && ub == 0 && (vb == 0 || g_str_has_prefix(pa, "px"));
-            const bool only_b = ub > 0 && ua == 0 && (va == 0 || g_str_has_prefix(pb, "px"));
-            if (only_a || only_b) { // 0 has any unit, a number may be of px
+            const bool only_a = ua > 0 && ub == 0 && vb == 0, only_b = ub > 0 && ua == 0 && va == 0;
+            if (only_a || only_b) { // 0 has any unit
                 g_string_append_len(out, only_a ? pa : pb, (gssize)(only_a ? ua : ub));
                 pa += ua, pb += ub;
             }
@@ -216,12 +215,20 @@ static char *mix_colours(const double a[4], const double b[4], double p)
                            (int)(v[2] + .5), text);
 }
 
-/** Returns: true if a text is one number with a unit, or calc() of such. */
-static bool is_length(const char *text)
+/** Returns: true if a text is one number of those kinds, or calc() of such. */
+static bool measures(const char *text, int kinds)
 {
     const FlCssUnits any = {1, 1, 1, 1, 1, 1};
     double value;
-    return fl_css_number(text, &any, 1, &value);
+    return fl_css_amount(text, kinds, &any, 1, &value);
+}
+
+/** What makes a number without unit one that can be added to `other`. */
+static const char *unit_beside(const char *number, const char *other)
+{
+    return !measures(number, FL_CSS_PLAIN) || measures(other, FL_CSS_PLAIN | FL_CSS_SHARE) ? ""
+           : measures(other, FL_CSS_SIZE) ? " * 1px"
+                                          : " * 1deg";
 }
 
 /** Returns: true for a colour that mixes in Oklab [CSS Color 4 §12.1]. */
@@ -236,13 +243,11 @@ static char *weighted_sum(const char *a, const char *b, double p, double q)
 {
     double distance;
     char *text = combine(a, b, p, q, &distance);
-    if (text || !is_length(a) || !is_length(b))
+    if (text || !measures(a, ~0) || !measures(b, ~0))
         return text;
     g_autofree char *wa = fl_css_number_text(p), *wb = fl_css_number_text(q);
-    const bool from_0 = strcmp(a, "0") == 0; // which has any unit
-    if (from_0 || strcmp(b, "0") == 0)
-        return g_strdup_printf("calc((%s) * %s)", from_0 ? b : a, from_0 ? wb : wa);
-    return g_strdup_printf("calc((%s) * %s + (%s) * %s)", a, wa, b, wb);
+    return g_strdup_printf("calc((%s) * %s%s + (%s) * %s%s)", a, wa, unit_beside(a, b), b, wb,
+                           unit_beside(b, a));
 }
 
 char *fl_interpolate(const char *a, const char *b, double p)
