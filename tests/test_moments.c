@@ -260,6 +260,9 @@ static void css_has_its_values(void)
     assert_at(
         CSS("@keyframes k{from{rotate:0}to{rotate:calc(1turn / 2)}}#a{animation:k 1s linear}"), .5,
         "transform", "matrix(0, 1, -1, 0, 0, 0)");
+    assert_at(CSS("@layer o{@layer i{@keyframes k{to{x:2px}}}@keyframes k{to{x:4px}}"
+                  "@layer i{@keyframes k{to{x:6px}}}}#a{animation:k 1s linear}"),
+              .5, "x", "2px"); // the layer around others is the last of them
     assert_at(CSS("@keyframes k{to{x:9px}}#a{x:4px;animation:k 1s;animation-timeline:scroll()}"),
               .5, "x", "4px");
     assert_at(CSS("@keyframes k{0%{display:none}}#a{animation:k 1s linear}"), .1, "display",

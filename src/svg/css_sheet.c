@@ -262,12 +262,19 @@ static void keyframe_clear(void *data)
     g_array_unref(((FlCssKeyframe *)data)->declarations);
 }
 
-/** Reads the block of @keyframes NAME, unless a stronger rule has that name. */
-static void read_keyframes(Reader *reader, const char *name, const char *block, int strength)
+/** Reads the block of @keyframes NAME, unless a stronger rule has that name: one of a later layer,
+ * or without a prefix. */
+static void read_keyframes(Reader *reader, const char *name, const char *block, const Layer *layer,
+                           bool prefixed)
 {
     const GArray *known = g_hash_table_lookup(reader->sheet->keyframes, name);
-    if (known && known->len && g_array_index(known, FlCssKeyframe, 0).strength > strength)
-        return;
+    if (known && known->len) {
+        const FlCssKeyframe *rival = &g_array_index(known, FlCssKeyframe, 0);
+        const Layer *other = reader->layers->pdata[rival->layer];
+        rank_layers(reader->layers->pdata[0], 0);
+        if (other->rank > layer->rank || (other == layer && prefixed && !rival->prefixed))
+            return;
+    }
     GArray *frames = g_array_new(FALSE, FALSE, sizeof(FlCssKeyframe));
     g_array_set_clear_func(frames, keyframe_clear);
     for (const char *s = fl_css_space(block); *s;) {
@@ -284,7 +291,8 @@ static void read_keyframes(Reader *reader, const char *name, const char *block, 
                                  : g_ascii_strcasecmp(key[i], "to") == 0
                                      ? 1
                                      : g_ascii_strtod(key[i], NULL) / 100;
-            const FlCssKeyframe frame = {CLAMP(share, 0, 1), g_array_ref(declarations), strength};
+            const FlCssKeyframe frame = {CLAMP(share, 0, 1), g_array_ref(declarations), layer->id,
+                                         prefixed};
             g_array_append_val(frames, frame);
         }
         s = fl_css_space(*close ? close + 1 : close);
@@ -415,9 +423,7 @@ static void read_at_rule(Reader *reader, const char *name, const char *prelude, 
                block) {
         g_autofree char *string = fl_css_string_or_url(prelude);
         const char *plain = string ? string : prelude;
-        // rules outside of layers win, then those of later layers, then the name without prefix
-        const int layer = place->layer->id ? place->layer->id : INT_MAX / 2;
-        read_keyframes(reader, plain, block, 2 * layer + (*name != '-'));
+        read_keyframes(reader, plain, block, place->layer, *name == '-');
     } else if (strcmp(name, "property") == 0 && block)
         read_property(reader, prelude, block);
     else if (strcmp(name, "font-face") == 0)

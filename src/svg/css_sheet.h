@@ -22,7 +22,8 @@ typedef struct FlCssRule {
 typedef struct FlCssKeyframe {
     double share; // 0 … 1
     GArray *declarations;
-    int strength; // of the rule among those of its name
+    int layer; // of the rule, counted as they appear
+    bool prefixed;
 } FlCssKeyframe;
 
 /** All sheets of a document. */
