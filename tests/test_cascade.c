@@ -627,8 +627,10 @@ static void values_of_another_kind_are_left_out(void)
         {"<filter id='a' filterUnits='nonsense' width='-1'/>", "width", "0"},
         {"<filter><feOffset id='a' dx='5' width='9'/></filter>", "dx", ""}, // another moves
         {"<filter><feOffset id='a' dx='5'/></filter>", "dx", "5"},
-        {"<filter><feFlood width='.1'/><feTile id='a'/></filter>", "flood-opacity", "0"},
-        {"<filter><feFlood width='9'/><feTile id='a'/></filter>", "flood-opacity", ""},
+        {"<filter><feFlood width='0'/><feTile id='a'/></filter>", "flood-opacity", "0"},
+        {"<filter><feFlood width='.1em'/><feTile id='a'/></filter>", "flood-opacity", ""},
+        {"<filter><feFlood result='b'/><feFlood width='0'/><feTile id='a' in='b'/></filter>",
+         "flood-opacity", ""},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(values); i++)
         assert_value(values[i][0], values[i][1], values[i][2]);

@@ -259,17 +259,16 @@ static void mend_offset(xmlNode *step)
         fl_set_attribute(step, dropped[i], NULL);
 }
 
-/** librsvg aborts over a tile of less than a pixel, which browsers leave empty. */
+/** librsvg aborts over a tile without a side, which browsers leave empty. */
 static void mend_tile(xmlNode *step)
 {
     static const char *const sides[] = {"width", "height"};
-    const FlCssUnits units = {.font_size = 16, .root_font_size = 16};
     const xmlNode *before = xmlPreviousElementSibling(step);
-    const bool in_box =
-        g_strcmp0(fl_attribute(step->parent, "primitiveUnits"), "objectBoundingBox") == 0;
-    for (int i = 0; before && i < 2; i++)
+    const char *in = fl_attribute(step, "in");
+    const bool tiles = before && (!in || g_strcmp0(in, fl_attribute(before, "result")) == 0);
+    for (int i = 0; tiles && i < 2; i++)
         if (fl_attribute(before, sides[i]) &&
-            fl_length_of(before, sides[i], &units, 100) < (in_box ? .005 : .5)) {
+            fl_length_of(before, sides[i], &(FlCssUnits){1, 1, 1, 1, 1, 1}, 1) <= 0) {
             xmlNodeSetName(step, (const xmlChar *)"feFlood");
             fl_set_attribute(step, "flood-opacity", "0");
             fl_set_attribute(step, "in", NULL);
