@@ -631,6 +631,8 @@ static void values_of_another_kind_are_left_out(void)
         {"<filter><feFlood width='.1em'/><feTile id='a'/></filter>", "flood-opacity", ""},
         {"<filter><feFlood result='b'/><feFlood width='0'/><feTile id='a' in='b'/></filter>",
          "flood-opacity", ""},
+        {"<text id='a' x='9px 1em'/>", "x", "9px 1em"}, // a list of places
+        {"<path id='a' style='filter:URL(#f) Opacity(.5)'/>", "filter", "URL(#f) Opacity(.5)"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(values); i++)
         assert_value(values[i][0], values[i][1], values[i][2]);
@@ -643,7 +645,8 @@ static void each_kind_that_is_left_out_is_told_once(void)
         "<style>path{text-transform:uppercase;fill:nonsense;-webkit-foo:1;cursor:help}"
         ":has(a){fill:red}</style><path style='text-transform:none'/><path id='a' d='M0 0h1' "
         "stroke='rgb(from 1 r g b)' style='mix-blend-mode:plus-lighter;word-spacing:1px'/>"
-        "<text style='rotate:1deg' transform-box='fill-box'>a</text>",
+        "<text style='rotate:1deg' transform-box='fill-box' clip-path=' url(#c)'>a</text><clipPath "
+        "id='c'/>",
         "a", "fill", warnings));
     g_assert_cmpint(fl_warnings_count(warnings), ==, 7);
     g_assert_nonnull(strstr(fl_warnings_get(warnings, 6)->text, "“transform-box” cannot"));

@@ -465,9 +465,10 @@ static void compute_attributes(Cascade *c, xmlNode *node, const Style *style)
             g_strstrip(strstr(text, "/*") ? fl_css_without_comments(text) : g_strdup(text));
         if (!fl_css_is_valid(property, trimmed, true)) {
             warn_of_value(c, property, trimmed);
-            if (property->kind == FL_CSS_PAINT || property->kind == FL_CSS_GEOMETRY)
+            if (property->kind == FL_CSS_PAINT ||
+                (property->kind == FL_CSS_GEOMETRY && !fl_is_one_of(node, "text tspan")))
                 fl_set_attribute(node, name, NULL); // as browsers do
-            continue;                               // librsvg decides
+            continue;                               // librsvg decides, and takes one of a list
         }
         g_autofree char *value = compute(c, name, property, trimmed, style);
         if (strcmp(value, text) != 0)

@@ -225,15 +225,19 @@ static void add_clip(xmlNode *node, const FlOutlines *outlines, bool evenodd, in
     fl_declare(node, "clip-path:url(#%s)", id);
 }
 
+static bool is_url(const char *text)
+{
+    return g_ascii_strncasecmp(text, "url(", 4) == 0;
+}
+
 static const char *apply_clip(GHashTable *effects, xmlNode *node, const FlCssUnits *units,
                               int *n_clips)
 {
     const char *css = get(effects, "clip-path"), *attribute = fl_attribute(node, "clip-path");
-    const char *value = css || !attribute || g_str_has_prefix(attribute, "url(") ? css : attribute;
+    const char *value = css || !attribute || is_url(fl_css_space(attribute)) ? css : attribute;
     if (!value)
         return NULL;
-    if (!*value || strcmp(value, "none") == 0 || strcmp(value, "inherit") == 0 ||
-        g_ascii_strncasecmp(value, "url(", 4) == 0) {
+    if (!*value || strcmp(value, "none") == 0 || strcmp(value, "inherit") == 0 || is_url(value)) {
         fl_declare(node, "clip-path:%s", *value ? value : "none");
         return NULL;
     }
@@ -401,8 +405,8 @@ static const char *apply_filter(GHashTable *effects, xmlNode *node, const FlCssU
         if (made)
             g_free(part[i]), part[i] = made;
         changed |= made != NULL;
-        read = read && (made || !strchr(part[i], '(') || g_str_has_prefix(part[i], "url(") ||
-                        g_str_has_prefix(part[i], "opacity("));
+        read = read && (made || !strchr(part[i], '(') || is_url(part[i]) ||
+                        g_ascii_strncasecmp(part[i], "opacity(", 8) == 0);
     }
     if (!changed && read)
         return NULL;
