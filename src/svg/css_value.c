@@ -134,7 +134,7 @@ static bool join_kinds(int *kind, int other)
     if (*kind && other && *kind != other && all != (FL_CSS_SIZE | FL_CSS_SHARE) &&
         all != (FL_CSS_PLAIN | FL_CSS_SHARE))
         return false;
-    *kind = all & FL_CSS_SIZE ? FL_CSS_SIZE : all & FL_CSS_SHARE ? FL_CSS_SHARE : all;
+    *kind = all & FL_CSS_SHARE ? FL_CSS_SHARE : all;
     return true;
 }
 
@@ -239,7 +239,7 @@ static bool read_call(const Calc *calc, const char **s, double *value)
     }
     (*s)++;
     const int count = calc->depth < MOST_NESTED ? read_arguments(&inner, s, v, 8) : -1;
-    if (fl_css_has_word("sign sin cos tan sqrt pow exp", name))
+    if (fl_css_has_word("sign sin cos tan", name))
         *calc->kind = FL_CSS_PLAIN;
     return count >= 0 && apply(name, v, count, value);
 }

@@ -268,7 +268,7 @@ static void mend_tile(xmlNode *step)
     const bool tiles = before && (!in || g_strcmp0(in, fl_attribute(before, "result")) == 0);
     for (int i = 0; tiles && i < 2; i++)
         if (fl_attribute(before, sides[i]) &&
-            fl_length_of(before, sides[i], &(FlCssUnits){1, 1, 1, 1, 1, 1}, 1) <= 0) {
+            fl_length_of(before, sides[i], &(FlCssUnits){0}, 1) <= 0) {
             xmlNodeSetName(step, (const xmlChar *)"feFlood");
             fl_set_attribute(step, "flood-opacity", "0");
             fl_set_attribute(step, "in", NULL);
