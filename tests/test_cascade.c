@@ -612,6 +612,7 @@ static void values_of_another_kind_are_left_out(void)
         {"<style>rect{width:40}</style><rect id='a' width='9'/>", "width", "9"},
         {"<rect id='a' style='width:40' width='9'/>", "width", "40"},
         {"<rect id='a' style='width:calc(4 * 10)' width='9'/>", "width", "9"},
+        {"<rect id='a' style='--w:40;width:var(--w)' width='9'/>", "width", "40"},
         {"<rect id='a' width='9pxx'/>", "width", ""},
         {"<style>rect{x:40}</style><rect id='a'/>", "x", "40"},
         {"<marker id='a' orient='45px'/>", "orient", ""},

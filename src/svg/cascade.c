@@ -302,7 +302,7 @@ static char *compute(Cascade *c, const char *name, const FlCssProperty *property
     const bool variable = strstr(text, "var(") || strstr(text, "env(");
     g_autofree char *substituted = variable ? fl_css_substitute(text, find_variable, style) : NULL;
     const char *value = !variable ? text : substituted ? g_strstrip(substituted) : "unset";
-    if (variable && substituted && !fl_css_is_valid(property, value, false)) {
+    if (variable && substituted && !fl_css_is_valid(property, value, true)) {
         warn_of_value(c, property, value);
         value = "unset";
     }
