@@ -605,6 +605,8 @@ static void values_of_another_kind_are_left_out(void)
         {"<path id='a' style='transform-origin:10px 10;transform:scale(2)'/>", "transform",
          "matrix(2, 0, 0, 2, 0, 0)"},
         {"<path id='a' style='transform:scale(1.2,)'/>", "transform", ""},
+        {"<path id='a' style='offset-path:path(\"M5 6h9\");offset-distance:2'/>", "transform",
+         "matrix(1, 0, 0, 1, 5, 6)"},
         {"<path id='a' transform='rotate(30'/>", "transform", ""},
         {"<path id='a' transform='rotate(30),'/>", "transform", ""},
         {"<path id='a' transform='rotate(30),scale(2)'/>", "transform", "rotate(30),scale(2)"},

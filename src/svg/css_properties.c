@@ -123,6 +123,8 @@ bool fl_css_is_valid(const FlCssProperty *property, const char *value, bool bare
     case FL_CSS_ABSENT:
         return is_nothing(value);
     case FL_CSS_TRANSFORM:
+        if (strcmp(name, "offset-distance") == 0)
+            return is_amount(value, FL_CSS_SIZE | FL_CSS_SHARE, false, true);
         return strcmp(name, "offset") != 0; // a shorthand; <stop> has it as attribute
     case FL_CSS_NUMBER:
         return is_amount(value, FL_CSS_PLAIN | FL_CSS_SHARE, false, true);
