@@ -34,7 +34,7 @@ typedef struct Cascade {
     GHashTable *copies; // <use> -> what it shows
     int n_clips;
     bool has_text;
-    bool bare; // the declarations are those of an attribute, which browsers read as of old
+    bool bare; // the declarations stand in an attribute, where browsers are less strict
 } Cascade;
 
 /** A declared value that won. */

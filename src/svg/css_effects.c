@@ -391,7 +391,7 @@ static char *add_filter(xmlNode *node, const char *function, const FlCssUnits *u
     return g_strdup_printf("url(#%s)", id);
 }
 
-/** Returns: "filter" if it has a function that cannot be read; nothing is filtered then. */
+/** Returns: "filter" if one of its functions cannot be read; the element has no filter then. */
 static const char *apply_filter(GHashTable *effects, xmlNode *node, const FlCssUnits *units, int *n)
 {
     g_autofree char *value = value_or_attribute(effects, node, "filter");

@@ -223,7 +223,7 @@ static bool measures(const char *text, int kinds)
     return fl_css_amount(text, kinds, &any, 1, &value);
 }
 
-/** What makes a number without unit one that can be added to `other`. */
+/** The factor by which a number without unit can be added to `other`. */
 static const char *unit_beside(const char *number, const char *other)
 {
     return !measures(number, FL_CSS_PLAIN) || measures(other, FL_CSS_PLAIN | FL_CSS_SHARE) ? ""

@@ -202,7 +202,7 @@ static void mend_numbers(xmlNode *step, const char *name, const char *text, int 
 {
     double v[20], least = 0;
     g_autofree char *list = g_strchomp(g_strdup(text));
-    if (g_str_has_suffix(list, ",")) // which browsers let pass
+    if (g_str_has_suffix(list, ",")) // browsers let it pass
         list[strlen(list) - 1] = '\0';
     const int n = fl_numbers_read(list, v, most);
     for (int i = 0; i < n; i++)
@@ -581,7 +581,7 @@ static void mend_words(xmlNode *node)
 static void mend(Mend *m, xmlNode *node)
 {
     if (g_str_has_prefix((const char *)node->name, "fe") || fl_is(node, "stop") ||
-        (fl_is_undrawn(node) && !fl_is_one_of(node, "style script"))) // which have types as well
+        (fl_is_undrawn(node) && !fl_is_one_of(node, "style script"))) // their types are others
         mend_values(node);
     if (fl_is(node, "feDropShadow"))
         mend_shadow(node, m->n_made++);
