@@ -250,10 +250,12 @@ static void limit_to(int16_t *restrict row, const int16_t *restrict neighbours, 
     }
 }
 
-/** One pass: from the row before, and along the row in the direction of the pass. */
-static void limit_row(int16_t *row, const int16_t *before, int width, bool forward)
+/** One pass: from the row before, which lies `back` away (0: none), and along the row in the
+ * direction of the pass. */
+static void limit_row(int16_t *row, int back, int width, bool forward)
 {
-    if (before) {
+    const int16_t *before = row + back;
+    if (back != 0) {
         limit_to(row, before, width, SLOPE_SIDE);
         limit_to(row + 1, before, width - 1, SLOPE_CORNER);
         limit_to(row, before + 1, width - 1, SLOPE_CORNER);
@@ -271,12 +273,12 @@ static void limit_slope(uint16_t *plane, int width, int height)
     for (int y = 0; y < height; y++) {
         int16_t *row = rows + (size_t)y * (size_t)width;
         if (!is_blank((const uint16_t *)row, width))
-            limit_row(row, y > 0 ? row - width : NULL, width, true);
+            limit_row(row, y > 0 ? -width : 0, width, true);
     }
     for (int y = height - 1; y >= 0; y--) {
         int16_t *row = rows + (size_t)y * (size_t)width;
         if (!is_blank((const uint16_t *)row, width))
-            limit_row(row, y < height - 1 ? row + width : NULL, width, false);
+            limit_row(row, y < height - 1 ? width : 0, width, false);
     }
 }
 
