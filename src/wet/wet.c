@@ -144,6 +144,8 @@ static bool mark_all(FlWetStep *step, GError **error)
     if (cut > 0)
         fl_wet_sheet_fade(&wet->sheet, 1 - cut);
     for (int m = 0; m < wet->n_markers && cut < 1; m++)
+        fl_wet_sheet_take_up(&wet->sheet, wet->marker[m].stains);
+    for (int m = 0; m < wet->n_markers && cut < 1; m++)
         fl_wet_sheet_stain(&wet->sheet, wet->marker[m].dials.style, wet->marker[m].stains);
     for (int m = 0; m < wet->n_markers; m++)
         fl_wet_sheet_wet(&wet->sheet, wet->marker[m].dials.style, step->frames,

@@ -262,18 +262,31 @@ static float seen_between(const FlWetSheet *sheet, const FlStainMark *mark, FlPa
            fl_ease(0, 2 * sheet->px, cell->depth - mark->depth);
 }
 
-/** Paint that passes takes up the stain in its way. A cell has one stain: the stronger, into which
- * the weaker turns as their strengths meet. */
+/** The share of a cell's stain that is seen between the pieces of a new one. */
+static float left_between(const FlWetSheet *sheet, const FlStainMark *mark, const FlWetCell *cell)
+{
+    return mark->depth > 0 ? seen_between(sheet, mark, fl_wet_sheet_grain(sheet, mark->at), cell)
+                           : 1;
+}
+
+void fl_wet_sheet_take_up(FlWetSheet *sheet, const GArray *stains)
+{
+    for (guint i = 0; i < stains->len; i++) {
+        const FlStainMark *mark = &g_array_index(stains, FlStainMark, i);
+        FlWetCell *cell = cell_at(sheet, mark->at);
+        const float stays = 1 - mark->lost * (1 - left_between(sheet, mark, cell));
+        cell->front *= 1 - mark->lost;
+        cell->stain *= stays, cell->film *= stays;
+    }
+}
+
+/** A cell has one stain: the stronger, into which the weaker turns as their strengths meet. */
 static void stain_cell(const FlWetSheet *sheet, const FlFrontStyle *style, const FlStainMark *mark,
                        FlWetCell *cell)
 {
-    const FlPaperGrains grain = fl_wet_sheet_grain(sheet, mark->at);
-    const float hollow = share_of(grain.hollow);
-    const float seen = mark->depth > 0 ? seen_between(sheet, mark, grain, cell) : 1;
+    const float hollow = share_of(fl_wet_sheet_grain(sheet, mark->at).hollow);
+    const float seen = left_between(sheet, mark, cell);
     const float stain = style->stain * mark->charge, film = style->film * mark->charge;
-    const float stays = 1 - mark->lost * (1 - seen);
-    cell->front *= 1 - mark->lost;
-    cell->stain *= stays, cell->film *= stays;
     const float old = cell->depth > 0 ? cell->stain * left_of(sheet, cell->age, hollow) : 0;
     const float fresh = stain * left_of(sheet, mark->age, hollow);
     const float own = (1 - seen * MIN(4 * old / MAX(fresh, 1e-9f), 1)) *

@@ -75,6 +75,9 @@ void fl_wet_sheet_dry(FlWetSheet *sheet, float frames);
 /** Leaves a share of all marks; 0: a new sheet. */
 void fl_wet_sheet_fade(FlWetSheet *sheet, float share);
 
+/** Paint that passes takes up the marks in its way: that of all shapes, before any leaves its
+ * stain, since a shape below another leaves the paper last. */
+void fl_wet_sheet_take_up(FlWetSheet *sheet, const GArray *stains);
 void fl_wet_sheet_stain(FlWetSheet *sheet, const FlFrontStyle *style, const GArray *stains);
 void fl_wet_sheet_wet(FlWetSheet *sheet, const FlFrontStyle *style, float frames,
                       const GArray *fronts);
