@@ -14,9 +14,12 @@ result() { # result STATUS SENTENCE: shows what the last command said after a fa
         echo "ok $n - $2"
     else
         echo "not ok $n - $2"
-        for told in out err; do
-            [ -f "$folder/$told" ] && tail -30 "$folder/$told" | sed "s/^/# std$told: /"
-        done
+        (
+            [ -f err ] || cd "$folder" || exit
+            for told in out err; do
+                [ -f $told ] && tail -30 $told | sed "s/^/# std$told: /"
+            done
+        )
     fi
 }
 
