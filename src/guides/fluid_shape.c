@@ -240,7 +240,8 @@ static void fit_motion(FlFluid *f, int contour, const double ridges[FL_MODES])
     }
 }
 
-/** What the rigid and the affine motion of its part and its flow leave unexplained at a cell. */
+/** The changes of a cell's distance that its part's rigid and affine motion, and its flow, do not
+ * explain. */
 static void explain(const FlFluid *f, int c, const FlFluidPart *part, float left[3])
 {
     const float x = f->column[c], y = f->line[c], memory = f->dials.memory;
@@ -253,7 +254,7 @@ static void explain(const FlFluid *f, int c, const FlFluidPart *part, float left
         left[k] = unexplained(f, c, way[k]);
 }
 
-/** Sums what the motions of its part leave unexplained at a cell. */
+/** Adds the squares of these changes to the sums of the part. */
 static void judge_motions(const FlFluid *f, int c, FlFluidPart *part)
 {
     float left[3];
@@ -275,7 +276,7 @@ float fl_fluid_bulk_speed(const FlFluidPart *part)
     return (float)hypot(part->rigid.p[0], part->rigid.p[1]);
 }
 
-/** Finds the rigid and the affine motion of all parts; what their contours do not show is 0. A part
+/** Finds the rigid and the affine motion of all parts; modes that no contour shows are 0. A part
  * that only gets longer is fed at its end; one that grows on all sides swells. One that leaps by
  * more than its size and more than a little of the page is not known to be the part that was there
  * before. */

@@ -460,7 +460,7 @@ bool fl_frames_prepare(FlFrames *frames, GError **error)
     fl_style_cache_trim(plan->styles);
     g_clear_pointer(&frames->old_plan, fl_plan_free);
     if (plan->any_order)
-        fl_memory_trim(); // of earlier options
+        fl_memory_trim(); // gives the system what earlier choices took
     if (starts_late(plan) && fl_painters_flow(painters))
         read_earlier(frames);
     const bool ready = (plan->shapes.rasterised ||

@@ -371,8 +371,8 @@ static bool restart(FlPainter *painter, GError **error)
     return fresh || open_engine(painter, error);
 }
 
-/* A painter that was to begin with the picture after the frame's, and was stopped before, shows
- * another one. */
+/* True if the painter's picture is the frame's. One that was stopped on its way may be about to
+ * paint the next picture, and still have an earlier one. */
 static bool shows(const FlPainter *painter, int frame)
 {
     const int index = frame / painter->plan->settings.hold;

@@ -216,6 +216,18 @@ static void mend_numbers(xmlNode *step, const char *name, const char *text, int 
         fl_set_numbers(step, name, v, n);
 }
 
+/** Returns: false if browsers know no such value of an attribute of a paint or a filter. */
+static bool is_known(const char *name, const char *text)
+{
+    const char *words = words_of(name);
+    const bool share = strcmp(name, "offset") == 0;
+    double v;
+    if (words)
+        return fl_css_has_word(words, text);
+    return (!share && !fl_css_has_word("x1 y1 x2 y2 fx fy fr", name)) ||
+           fl_css_amount(text, share ? FL_CSS_PLAIN | FL_CSS_SHARE : ~0, &(FlCssUnits){0}, 1, &v);
+}
+
 /** Drops values that no browser knows, for which librsvg would leave out all that is painted or
  * filtered. */
 static void mend_values(xmlNode *node)
@@ -223,24 +235,18 @@ static void mend_values(xmlNode *node)
     const bool step = g_str_has_prefix((const char *)node->name, "fe");
     for (xmlAttr *a = node->properties, *next; a; a = next) {
         const char *name = (const char *)a->name, *text = fl_attribute(node, name);
-        const char *words = words_of(name);
         const int most = step && text ? most_numbers(node, name) : 0;
-        const bool share = strcmp(name, "offset") == 0;
-        double v;
         next = a->next;
         if (text && *text == '-' && fl_css_has_word("width height markerWidth markerHeight", name))
             fl_set_attribute(node, name, "0"); // nothing shows
         else if (most > 0)
             mend_numbers(node, name, text, most);
-        else if (text && (words ? !fl_css_has_word(words, text)
-                                : (share || fl_css_has_word("x1 y1 x2 y2 fx fy fr", name)) &&
-                                      !fl_css_amount(text, share ? FL_CSS_PLAIN | FL_CSS_SHARE : ~0,
-                                                     &(FlCssUnits){0}, 1, &v)))
+        else if (text && !is_known(name, text))
             fl_set_attribute(node, name, NULL);
     }
 }
 
-/** librsvg moves only what is in the step's own region: another step moves before it is cut. */
+/** librsvg moves only the part of its input in its own region: a step before it moves all. */
 static void mend_offset(xmlNode *step)
 {
     static const char *const region[][2] = {

@@ -168,8 +168,8 @@ static size_t cell_at(const FlLaid *laid, float x, float y)
 
 /** The ink of the paint a little inside the edge, in the frame before; where the shape has just
  * come, that is inside the nearest earlier edge, and at the side of the page beyond it. A shape
- * that has faded has no ink. Paint below another shape keeps its earlier one if that goes on beyond
- * the edge; if it ends there as well, its paint is what is seen to move. */
+ * that has faded has no ink. Paint below another shape keeps its earlier ink if the other one goes
+ * on beyond the edge, and takes the other's if both end there. */
 static void find_ink(const FlWetShape *shape, const FlMovingEdge *before, const FlEdgePoint *was,
                      FlEdgePoint *point)
 {

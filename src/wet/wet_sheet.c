@@ -252,21 +252,16 @@ static float frayed_to(const FlWetSheet *sheet, float hollow, float spot)
     return FRAYED_PX * sheet->px * (1 - 0.3f * hollow - 0.7f * spot);
 }
 
-/** The share of an earlier stain that passing paint leaves: the new stain breaks up towards its
- * sides, and the earlier one is seen between its pieces. */
-static float seen_between(const FlWetSheet *sheet, const FlStainMark *mark, FlPaperGrains grain,
-                          const FlWetCell *cell)
+/** The share of a cell's earlier stain that passing paint leaves: the new stain breaks up towards
+ * its sides, and the earlier one is seen between its pieces. */
+static float seen_between(const FlWetSheet *sheet, const FlStainMark *mark, const FlWetCell *cell)
 {
+    if (mark->depth <= 0)
+        return 1;
+    const FlPaperGrains grain = fl_wet_sheet_grain(sheet, mark->at);
     const float fray = frayed_to(sheet, share_of(grain.hollow), share_of(grain.spot));
     return fl_ease(-sheet->px, sheet->px, fray - mark->depth) *
            fl_ease(0, 2 * sheet->px, cell->depth - mark->depth);
-}
-
-/** The share of a cell's stain that is seen between the pieces of a new one. */
-static float left_between(const FlWetSheet *sheet, const FlStainMark *mark, const FlWetCell *cell)
-{
-    return mark->depth > 0 ? seen_between(sheet, mark, fl_wet_sheet_grain(sheet, mark->at), cell)
-                           : 1;
 }
 
 void fl_wet_sheet_take_up(FlWetSheet *sheet, const GArray *stains)
@@ -274,7 +269,7 @@ void fl_wet_sheet_take_up(FlWetSheet *sheet, const GArray *stains)
     for (guint i = 0; i < stains->len; i++) {
         const FlStainMark *mark = &g_array_index(stains, FlStainMark, i);
         FlWetCell *cell = cell_at(sheet, mark->at);
-        const float stays = 1 - mark->lost * (1 - left_between(sheet, mark, cell));
+        const float stays = 1 - mark->lost * (1 - seen_between(sheet, mark, cell));
         cell->front *= 1 - mark->lost;
         cell->stain *= stays, cell->film *= stays;
     }
@@ -285,7 +280,7 @@ static void stain_cell(const FlWetSheet *sheet, const FlFrontStyle *style, const
                        FlWetCell *cell)
 {
     const float hollow = share_of(fl_wet_sheet_grain(sheet, mark->at).hollow);
-    const float seen = left_between(sheet, mark, cell);
+    const float seen = seen_between(sheet, mark, cell);
     const float stain = style->stain * mark->charge, film = style->film * mark->charge;
     const float old = cell->depth > 0 ? cell->stain * left_of(sheet, cell->age, hollow) : 0;
     const float fresh = stain * left_of(sheet, mark->age, hollow);
