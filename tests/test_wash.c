@@ -472,6 +472,34 @@ static void beside_a_wash_all_is_as_at_its_rim(void)
     }
 }
 
+/* White is bare paper where it was painted, and nothing between the bristles of its rim: there it
+ * would be an even border, and its shadow a blue one. */
+static void white_ends_where_its_paint_ends(void)
+{
+    enum { STEP = 5 };
+    float dark[4] = {.5f, .5f, .5f, .5f}, zero[4] = {0};
+    FlWash wash = {.style = {.wash = 1},
+                   .key = 1,
+                   .brush_px = 80,
+                   .box = {0, 0, STEP, STEP},
+                   .step = STEP,
+                   .width = 2,
+                   .height = 2};
+    for (int k = 0; k < FL_WASH_PLANES; k++)
+        wash.plane[k] = k == FL_WASH_TONE ? dark : zero;
+    int16_t amounts[] = {0, 100, 900};
+    int8_t play[] = {99, 99, 99};
+    FlColumns row = {0, 3};
+    const FlArea area = {{0, 0, 3, 1}, &row};
+    fl_wash_lay(&wash, 1, &area, amounts, play);
+    g_assert_cmpint(amounts[0], ==, 0);
+    g_assert_cmpint(amounts[1], <, 200);
+    g_assert_cmpint(amounts[2], >, 900);
+    g_assert_cmpint(play[0], ==, 0);
+    g_assert_cmpint(play[1], ==, 0);
+    g_assert_cmpint(play[2], >, 20);
+}
+
 /* Where the edge of a pass grows wide, the tone beside it hardly changes: a crisp stretch is no
  * patch with ends. */
 static void edges_of_passes_are_lost_in_their_place(void)
@@ -1034,6 +1062,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/a-limb-carries-its-own", a_limb_carries_its_own);
     g_test_add_func("/wash/all-of-a-limb-has-its-wash", all_of_a_limb_has_its_wash);
     g_test_add_func("/wash/beside-a-wash-all-is-as-at-its-rim", beside_a_wash_all_is_as_at_its_rim);
+    g_test_add_func("/wash/white-ends-where-its-paint-ends", white_ends_where_its_paint_ends);
     g_test_add_func("/wash/edges-of-passes-are-lost-in-their-place",
                     edges_of_passes_are_lost_in_their_place);
     g_test_add_func("/wash/still-figures-do-not-change", still_figures_do_not_change);
