@@ -60,9 +60,24 @@ static double correlation(const double *values, double mean, double deviation, i
 {
     double sum = 0;
     for (int y = 0; y + dy < SIDE; y++)
-        for (int x = 0; x + dx < SIDE; x++)
+        for (int x = MAX(-dx, 0); x + MAX(dx, 0) < SIDE; x++)
             sum += (values[y * SIDE + x] - mean) * (values[(y + dy) * SIDE + x + dx] - mean);
-    return sum / (deviation * deviation * (SIDE - dx) * (SIDE - dy));
+    return sum / (deviation * deviation * (SIDE - abs(dx)) * (SIDE - dy));
+}
+
+/* The lamp of a scanner travels down the sheet, whose grain has no side that is lit. */
+static void light_comes_from_above(void)
+{
+    for (int kind = 0; kind < FL_PAPER_KINDS; kind++) {
+        double mean;
+        g_autoptr(FlPaperSheet) sheet = sheet_of(words[kind], 1, SIDE, SIDE, 0);
+        g_autofree double *light = lightness_of(sheet, fl_paper_grain((FlPaperKind)kind)->colour);
+        const double deviation = deviation_of(light, &mean);
+        const double down = correlation(light, mean, deviation, 2, 2);
+        const double up = correlation(light, mean, deviation, -2, 2);
+        g_test_message("%s: along the diagonals %.3f and %.3f", words[kind], down, up);
+        g_assert_cmpfloat(fabs(down - up), <, .05);
+    }
 }
 
 static void lightness_deviates_as_in_scans(void)
@@ -425,6 +440,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/paper/lightness-deviates-as-in-scans", lightness_deviates_as_in_scans);
+    g_test_add_func("/paper/light-comes-from-above", light_comes_from_above);
     g_test_add_func("/paper/nothing-repeats", nothing_repeats);
     g_test_add_func("/paper/little-of-it-is-in-long-waves", little_of_it_is_in_long_waves);
     g_test_add_func("/paper/a-sheet-is-a-function-of-place", a_sheet_is_a_function_of_place);

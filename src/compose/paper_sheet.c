@@ -67,13 +67,11 @@ static void fill_slow(Surface *surface)
         }
 }
 
-/* The slope towards the light, which comes from the upper left. */
+/* The slope towards the light, which comes from above, as of the lamp that travels down a scan. */
 static float slope_at(const Surface *surface, const float *height)
 {
-    const float half = .5f * surface->place.scale;
     const int row = surface->box.width;
-    const float dx = (height[1] - height[-1]) * half, dy = (height[row] - height[-row]) * half;
-    return .5f * dx + .87f * dy;
+    return .5f * surface->place.scale * (height[row] - height[-row]);
 }
 
 static bool find_smooth(Surface *surface, GError **error)
