@@ -69,5 +69,6 @@ float fl_fibres_hollow(const FlFibres *fibres, float x, float y)
 float fl_fibres_spot(const FlFibres *fibres, float x, float y)
 {
     const float fine = noise(fibres, SPOT, 2, x, y, 8, 8);
-    return fl_even((fine + noise(fibres, SPOT + 10, 5, x, y, 24, 24)) / 1.41f);
+    const float wide = noise(fibres, SPOT + 20, 1, x, y, 60, 60);
+    return fl_even((fine + noise(fibres, SPOT + 10, 5, x, y, 24, 24) + wide) / 1.73f);
 }

@@ -120,7 +120,7 @@ static void add_marks(const Front *front, const FlWetAround *around, const FlWet
         for (int x = 0; x < rect.width; x++) {
             const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
             FlFrontMark mark = {.at = (rect.y + y) * page.width + rect.x + x};
-            if (!(around->touches[p] & 1) || front->edge->contour.nearest[p] < 0)
+            if (!around->touches[p] || front->edge->contour.nearest[p] < 0)
                 continue;
             const float px = (float)x + front->shape->beside[0];
             const float py = (float)y + front->shape->beside[1];

@@ -36,7 +36,7 @@ static int frame_ahead(const FlWet *wet, int frame, int ahead)
 /** Planes of a region's rectangle, in the memory of `now`, `motion` and the maps. */
 typedef struct Planes {
     FlRect rect;
-    uint8_t *now, *then, *touches; // `then`: scratch
+    uint8_t *now, *then, *touches, *touched; // `then`: scratch
     float *motion, *distance_before, *beyond;
     float *front, *stain; // control maps; NULL: none
 } Planes;
@@ -55,10 +55,11 @@ static bool planes_init(Planes *planes, FlRect rect, GError **error)
 {
     const size_t n = fl_rect_pixels(rect);
     planes->rect = rect;
-    if (!(planes->now = fl_alloc_unset(3 * n, 1, "the edge of a region", error)) ||
+    if (!(planes->now = fl_alloc_unset(4 * n, 1, "the edge of a region", error)) ||
         !(planes->motion = fl_alloc(4 * n, sizeof(float), "the edge of a region", error)))
         return false;
     planes->then = planes->now + n, planes->touches = planes->now + 2 * n;
+    planes->touched = planes->now + 3 * n;
     planes->distance_before = planes->motion + 2 * n, planes->beyond = planes->motion + 3 * n;
     return true;
 }
@@ -107,8 +108,8 @@ static int lies_lowest(uint16_t lowest, int region)
     return lowest == 0 || lowest > region;
 }
 
-/** Marks the cells in which a region lies on bare paper: bit 0 now; bit 1 before, and there also
- * about a limb's half width below other figures: a limb that leaves shows no hole in a stain. */
+/** Finds the cells in which a region lies on bare paper; before, also about a limb's half width
+ * below other figures, ever less: a limb that leaves shows no hole in a stain. */
 static bool find_touches(const FlWet *wet, int region, Planes *planes, GError **error)
 {
     const FlRect rect = planes->rect;
@@ -128,8 +129,9 @@ static bool find_touches(const FlWet *wet, int region, Planes *planes, GError **
             bare[p] = (int16_t)lies_lowest(wet->lowest[1][cell], region);
         }
     fl_window_sums(bare, rect, reach, near);
+    const float all = (float)((2 * reach + 1) * (2 * reach + 1));
     for (size_t p = 0; p < fl_rect_pixels(rect); p++)
-        planes->touches[p] |= near[p] > 0 ? 2 : 0;
+        planes->touched[p] = (uint8_t)(255 * fl_ease(0, 0.3f, (float)near[p] / all) + 0.5f);
     return true;
 }
 
@@ -222,7 +224,7 @@ static bool mark_moving(const FlWetStep *step, FlMarker *marker, int before, int
                         .ink = step->painted ? NULL : wet->ink + 3 * marker->plan->region,
                         .region = marker->plan->region};
     memcpy(shape.paper, wet->paper, 3);
-    const FlWetAround around = {planes.beyond, planes.touches};
+    const FlWetAround around = {planes.beyond, planes.touches, planes.touched};
     if (!fl_moving_edge_init(&edge, &shape, &marker->before, error))
         return false;
     const float known = (float)edge.known / (float)MAX(edge.n, 1);

@@ -18,8 +18,8 @@ typedef struct FlWetDials {
 typedef struct FlWetAround {
     const float *beyond; // distance to its masks now and in some frames to come, cells; 0 inside;
                          // for fronts alone
-    const uint8_t *touches; // bit 0: the region lies on bare paper; bit 1: it did so in the frame
-                            // before, or on a limb
+    const uint8_t *touches; // 1: the region lies on bare paper
+    const uint8_t *touched; // 0..255: it did so in the frame before, or on a limb
 } FlWetAround;
 
 /** Says if a region has a front in a frame. */

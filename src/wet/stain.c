@@ -12,6 +12,7 @@ typedef struct Passing {
     float inset;              // paint ends so far inside its shape, cells
     float x, y;
     float before_x, before_y; // its place a frame before
+    float touched;            // as in FlWetAround
 } Passing;
 
 #define MOST_STEPS 12
@@ -87,12 +88,18 @@ static float away_from_sides(const FlWetShape *shape, float depth)
     return fl_ease(0, 8 * shape->px, depth);
 }
 
-#define BROAD_PX 52 // px of the page: half the width from which on a stain breaks up as deep as any
+#define BROAD_PX 34 // px of the page: half the width from which on a stain breaks up as deep as any
+#define DEEP_PX 14  // px of the page: deeper inside, no stain breaks up
+#define BEGINS 0.7f // depth of a stain, by the way from the place where it begins
 
-/** Stretches depths: the stain of a narrow shape breaks up less deep. */
-static float stretch_of(const FlWetShape *shape)
+/** The depth of a pixel inside the stain, which breaks up towards its sides and its beginning. The
+ * stain of a narrow shape breaks up less deep. */
+static float depth_of_stain(const Passing *pixel, float between, float receded)
 {
-    return CLAMP(BROAD_PX * shape->px / MAX(shape->half_width, 1), 1, 2);
+    const FlWetShape *shape = pixel->shape;
+    const float stretch = CLAMP(BROAD_PX * shape->px / MAX(shape->half_width, 1), 1, 2);
+    return CLAMP(stretch * MIN(between, BEGINS * receded), -2,
+                 DEEP_PX * shape->px * pixel->touched);
 }
 
 /** The strength of the stain at a pixel. */
@@ -116,14 +123,15 @@ static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, floa
     const float far = MAX(-now, 0) / (moved + 3 * shape->px);
     const float receded = point->receded - point->receding * (1 - cover.last);
     const float between = MAX(cover.most, depth_between_sides(pixel));
-    const float depth = MIN(between * stretch_of(shape), receded);
+    const float depth = depth_of_stain(pixel, between, receded);
     const float kept =
         (1 - fl_ease(1.3f, 2, far)) * fl_wet_between(point->kept_before, point->kept, cover.last);
     const float sides = fl_ease(0, 0.25f, kept) * (1 - away_from_sides(shape, depth));
     FlStainMark mark = {.at = at,
-                        .lost = (cover_of(cover.most) - cover_of(now)) * (1 - sides),
+                        .lost =
+                            pixel->touched * (cover_of(cover.most) - cover_of(now)) * (1 - sides),
                         .age = shape->frames * (1 - cover.last),
-                        .depth = CLAMP(depth, -2, 14 * shape->px)};
+                        .depth = depth};
     mark.charge =
         stain_at(pixel, dials) * kept * (1 - cover_of(now)) * fl_ease(0, 0.1f, cover.most - now);
     for (int c = 0; c < 3; c++)
@@ -151,7 +159,8 @@ static void wet_below(const Passing *pixel, const FlWetDials *dials, int32_t at,
                       GArray *fronts)
 {
     const float kept = MIN(stain_at(pixel, dials) * pixel->point->kept, 1);
-    const float away = away_from_sides(pixel->shape, depth_between_sides(pixel));
+    const float between = depth_of_stain(pixel, depth_between_sides(pixel), pixel->point->receded);
+    const float away = away_from_sides(pixel->shape, between);
     FlFrontMark mark = {.at = at, .density = kept * away * cover_of(depth), .edge = 3};
     memcpy(mark.ink, pixel->point->ink, sizeof mark.ink);
     if (mark.density > 0)
@@ -166,7 +175,7 @@ void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
     for (int y = 0; y < rect.height && edge->n > 0; y++)
         for (int x = 0; x < rect.width; x++) {
             const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
-            if (!(around->touches[p] & 2) || edge->contour.nearest[p] < 0)
+            if (around->touched[p] == 0 || edge->contour.nearest[p] < 0)
                 continue;
             const FlEdgePoint *point = &edge->point[edge->contour.nearest[p]];
             const float inset = MIN(2.5f * shape->px, 0.45f * point->half_width);
@@ -180,8 +189,15 @@ void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
                 continue;
             float ground[2];
             fl_wet_ground(shape, px, py, ground);
-            const Passing pixel = {shape, point, edge->distance, inset,
-                                   px,    py,    px - ground[0], py - ground[1]};
+            const Passing pixel = {.shape = shape,
+                                   .point = point,
+                                   .distance = edge->distance,
+                                   .inset = inset,
+                                   .x = px,
+                                   .y = py,
+                                   .before_x = px - ground[0],
+                                   .before_y = py - ground[1],
+                                   .touched = (float)around->touched[p] / 255};
             const int32_t at = (rect.y + y) * shape->page.width + rect.x + x;
             pass(&pixel, dials, at, now, marks);
             if (below > 0.5f)

@@ -355,8 +355,9 @@ static inline void shine_through(const FlWetSheet *on, Batch *restrict batch)
         const float front =
             MIN(fl_ease(0, 1, m[EDGE][i]) * (m[FRONT][i] * grain + tip) / fronts, 1);
         const float inside = m[DEPTH][i] / stains / (FRAYED_PX * sheet->px);
-        const float late = 0.3f * (hollow + spot) + 0.4f * inside;
-        const float film = m[FILM][i] * fl_ease(0, 0.9f, (1.2f + 3.6f * late - age) / 1.6f);
+        const float late = 0.2f * hollow + 0.6f * spot + 0.2f * inside;
+        const float dry = 1.2f + 4.6f * late; // frames
+        const float film = m[FILM][i] * (1 - fl_ease(0.2f * dry, dry, age));
         const float coarse = CLAMP(1 - 0.55f * g + 1.1f * g * (hollow - 0.5f), 0.1f, 1.4f);
         const float pigment = m[STAIN][i] * left_of(sheet, age, hollow) * coarse;
         const float frayed = frayed_to(sheet, hollow, spot) * (1 - MIN(3 * front, 1));
