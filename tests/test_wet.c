@@ -396,6 +396,7 @@ static void test_fingers(void)
     const float shortest = reach[N / 20], median = reach[N / 2], longest = reach[N - 1 - N / 20];
     g_test_message("reach from %.1f, median %.1f, to %.1f px", shortest, median, longest);
     g_assert_cmpfloat(longest - median, >, 1.5f * (median - shortest));
+    g_assert_cmpfloat(longest, <, 1.75f * median); // and none is a thorn
     scene_free(scene);
 }
 

@@ -13,7 +13,7 @@ enum { FINE, MIDDLE, COARSE, N_SIZES, BIG = 100, HOLLOW, SPOT };
 /** Lattices of the fibres along and across them, and their weights, px of the page. */
 static const struct {
     float along, across, weight;
-} sizes[N_SIZES] = {{24, 5, 0.25f}, {40, 11, 0.55f}, {60, 26, 0.8f}};
+} sizes[N_SIZES] = {{24, 7, 0.2f}, {40, 13, 0.55f}, {60, 28, 0.8f}};
 
 #define DIRECTIONS 6
 
@@ -56,7 +56,7 @@ float fl_fibres_run(const FlFibres *fibres, float x, float y, float dx, float dy
         squares += near * near * near * near;
     }
     const float big = noise(fibres, BIG, 1, x, y, 40, 40);
-    return fl_even(0.8f * sum / sqrtf(squares) + 0.6f * big);
+    return fl_even(1.2f * sum / sqrtf(squares) + 0.6f * big);
 }
 
 float fl_fibres_hollow(const FlFibres *fibres, float x, float y)

@@ -94,7 +94,7 @@ static bool find_mark(const Front *front, const FlWetSheet *sheet, size_t p, flo
     const float run = fl_fibres_run(&sheet->fibres, (float)at.x / px, (float)at.y / px,
                                     (float)(dx / length), (float)(dy / length));
     const float fingers = style->fingers * fl_ease(1.5f * px, 7 * px, f);
-    const float finger = 3 * run * run;                 // a few are long, many short
+    const float finger = 2.6f * (1 - fl_fall(1.6f * run * run)); // a few are long, many short
     const float soft = MAX(style->soft * f, 1.1f * px); // half of it lies beyond a hard end
     const float reach = 1.25f * f * (1 - fingers + fingers * finger) - ahead + 2 * px + 0.5f * soft;
     const float over = front->dials->overrun * px * (0.4f + 0.7f * finger) *
