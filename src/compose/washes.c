@@ -9,7 +9,7 @@
 
 #define STEP_PX 5    // px of the page between points
 #define SLOW_PX 1.5f // px of the page a frame at which motion turns the light half way
-#define MOVED 2.0f   // strength of light and shadow in what moves, as a share of that at rest
+#define MOVED 2.7f   // strength of light and shadow in what moves, as a share of that at rest
 
 /* ---- a wash ---------------------------------------------------------------------------------- */
 

@@ -71,7 +71,7 @@ FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame)
     return drawing->frame[frame].anchor[region];
 }
 
-#define DRIFT_FRAMES 12
+#define DRIFT_FRAMES 14
 
 static bool has_begun(const FlAnchor *anchor)
 {

@@ -108,10 +108,10 @@ static void add_turn(Fit *fit, double weight, FlPoint from, FlPoint to)
     fit->most += weight * (from.x * from.x + from.y * from.y + to.x * to.x + to.y * to.y);
 }
 
-#define HELD_PX 0.1  // of a side of a box that stays where it is
-#define GROWN_PX 1   // of one that moves on
-#define GROWS 0.006  // way of a growing edge in a frame, at most, share of the page's longer side
-#define FOLLOWS 0.15 // share of it by which the mean way follows: strokes come one by one
+#define HELD_PX 0.1 // of a side of a box that stays where it is
+#define GROWN_PX 1  // of one that moves on
+#define GROWS 0.016 // way of a growing edge in a frame, at most, share of the page's longer side
+#define FOLLOWS 0.1 // share of it by which the mean way follows: strokes come one by one
 
 /* True if a leaf has grown on one side, held the other, and not shrunk on any; page: its width and
  * height. False at the page's edges, which may cut the leaf off. */
