@@ -649,6 +649,30 @@ static void a_front_parts_two_tones(void)
     }
 }
 
+/* Of a front, the flooded side is crisp where the brush was dry and soft where it was wet, and
+ * paint lies for long beyond the line. */
+static void a_front_is_soft_in_wet_paint(void)
+{
+    double before[2] = {0}, beyond[2] = {0}, line[2] = {0};
+    for (int dry = 0; dry < 2; dry++)
+        for (int along = 0; along < 200; along++) {
+            Row row = {0};
+            for (int i = 0; i < ROW; i++) {
+                row.values[FL_WASH_FRONT][i] = (float)(i - ROW / 2);
+                row.values[FL_WASH_FRONTS][i] = 1, row.values[FL_WASH_X][i] = 7 * (float)along;
+                row.values[FL_WASH_DRY][i] = dry ? 1 : -1;
+            }
+            find_row(&row);
+            before[dry] += (double)row.tones[ROW / 2 - 5];
+            line[dry] += (double)row.tones[ROW / 2 + 2],
+                beyond[dry] += (double)row.tones[ROW / 2 + 20];
+        }
+    g_test_message("5 px before the line %.3f and %.3f, on it %.3f, 20 px beyond %.3f",
+                   before[0] / 200, before[1] / 200, line[0] / 200, beyond[0] / 200);
+    g_assert_cmpfloat(before[0], >, 2 * before[1]);
+    g_assert_cmpfloat(beyond[0], >, .15 * line[0]);
+}
+
 /* Along a front, teeth of uneven length run on the way of the water, and none back. */
 static void fronts_have_teeth(void)
 {
@@ -759,8 +783,17 @@ static void strokes_stay_dry_for_their_length(void)
         turns += i >= POINTS && (dry[i] > 0) != (dry[i - POINTS] > 0);
     }
     const double length = 2. * STEP * ALL / turns;
-    g_test_message("the brush turns dry or wet every %.0f px", length);
+    double bends = 0; // of the brush's way across, as a share of the way along
+    for (int i = 1; i < ALL; i++)
+        if (i % POINTS > 0)
+            bends += pow(
+                50 * (double)(wash.plane[FL_WASH_PASS][i] - wash.plane[FL_WASH_PASS][i - 1]) / STEP,
+                2);
+    bends = sqrt(bends / ALL);
+    g_test_message("the brush turns dry or wet every %.0f px; its way has slopes of %.2f", length,
+                   bends);
     g_assert_true(length > 110 && length < 160);
+    g_assert_cmpfloat(bends, <, .15); // a hand's, not a marbled paper's
 }
 
 /* Parts of a fill that move apart: no line where one's wash passes into the other's. */
@@ -1068,6 +1101,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wash/still-figures-do-not-change", still_figures_do_not_change);
     g_test_add_func("/wash/touching-shapes-of-one-fill-are-one-wash",
                     touching_shapes_of_one_fill_are_one_wash);
+    g_test_add_func("/wash/a-front-is-soft-in-wet-paint", a_front_is_soft_in_wet_paint);
     g_test_add_func("/wash/a-gradient-has-the-fill-of-its-body",
                     a_gradient_has_the_fill_of_its_body);
     g_test_add_func("/wash/a-front-parts-two-tones", a_front_parts_two_tones);

@@ -116,13 +116,13 @@ static inline float front_at(const Brush *brush, const Fields *slow, int i, floa
 {
     const float away = slow->plane[FL_WASH_FRONT][i];
     const float strength = MAX(slow->plane[FL_WASH_FRONTS][i], 0);
-    const float past = away + (4 - 2 * MIN(strength, 1)) * ragged;
     const float fine =
         ragged_at(brush, 3.5f * slow->plane[FL_WASH_X][i], 3.5f * slow->plane[FL_WASH_Y][i]);
+    const float past = away + (4 - 2 * MIN(strength, 1)) * ragged + 1.6f * fine;
     const float tongue = 4 + 15 * (1.6f + ragged) * MAX(fine + .45f, 0), beyond = MAX(past, 0);
-    const float line = .75f * fl_smooth(1 - past / tongue) + .25f * fl_decay(beyond * .06f) +
-                       .3f * fl_decay(beyond * .6f);
-    const float front = past < 0 ? fl_decay(MAX(-past, 0) * .8f) : line;
+    const float line = .55f * fl_smooth(1 - past / tongue) + .4f * fl_decay(beyond * .05f);
+    const float sharp = .3f + .5f * fl_smooth(.5f + slow->plane[FL_WASH_DRY][i]);
+    const float front = past < 0 ? fl_decay(MAX(-past, 0) * sharp) : line;
     const bool far = (away < -12) | (away > 60);
     return far ? 0 : strength * front;
 }
@@ -131,7 +131,7 @@ static inline float front_at(const Brush *brush, const Fields *slow, int i, floa
 static inline float side_at(float away, float strength, float ragged)
 {
     const float lost = fl_clamp(1 - strength, 0, 1);
-    const float lost_px = 2 + 78 * lost, past = away + (2 + 18 * lost) * ragged;
+    const float lost_px = 5 + 75 * lost, past = away + (2 + 18 * lost) * ragged;
     return fl_smooth(.5f + past / lost_px) - .5f;
 }
 
@@ -173,7 +173,7 @@ static inline float tone_at(const Brush *brush, const Fields *slow, int i, float
     const float load = style->passes * load_at(brush, slow, i, ragged);
     const float front = front_at(brush, slow, i, ragged);
     const float side = side_at(slow->plane[FL_WASH_FRONT][i], strength, ragged);
-    const float heavy = .05f * MAX(slow->plane[FL_WASH_HUE][i], 0);
+    const float heavy = .06f * MAX(slow->plane[FL_WASH_HUE][i], 0);
     const float rough = lines * (slow->plane[FL_WASH_ROUGH][i] + heavy) * ragged;
     *hue = slow->plane[FL_WASH_HUE][i] + .4f * MAX(load, -1) + .3f * front + 3 * rough;
     return slow->plane[FL_WASH_TONE][i] + .29f * load + .58f * front + rough +

@@ -61,14 +61,14 @@ typedef float Values[FL_WASH_PLANES][FL_NOISE_ROW];
 /* Passes of the brush lie across the light's slope, each with a wavering edge. */
 static void find_passes(const FlWash *wash, const Places *at, Values values)
 {
-    static const float wide[2] = {170, 170};
+    static const float wide[2] = {300, 300};
     static const float cell[2] = {160, 110};
     float waver[FL_NOISE_ROW];
-    noise_at(fl_key(wash->key, KEY_PASS), at, wide, 0, 3, .5f, waver);
+    noise_at(fl_key(wash->key, KEY_PASS), at, wide, 0, 2, .35f, waver);
     noise_at(fl_key(wash->key, KEY_DRY), at, cell, 0, 1, 1, values[FL_WASH_DRY]);
     for (int i = 0; i < at->n; i++) {
         const float across = wash->along[0] * at->y[i] - wash->along[1] * at->x[i];
-        values[FL_WASH_PASS][i] = across / wash->brush_px + .45f * waver[i];
+        values[FL_WASH_PASS][i] = across / wash->brush_px + .6f * waver[i];
     }
 }
 
