@@ -52,6 +52,7 @@ typedef struct Tones {
     int8_t play[W * H];
 } Tones;
 
+static float paper_px = 1; // px of a page of 1000
 static uint64_t film_seed = 1;
 
 /* The recording's amounts are off by `uneven` to both sides of the fill's, line by line. */
@@ -85,7 +86,7 @@ static Tones *lay_frame_of(const FlDrawing *drawing, int frame, const FlWashStyl
                                   .seed = film_seed,
                                   .width = W,
                                   .height = H,
-                                  .paper_px = 1};
+                                  .paper_px = paper_px};
     g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, frame, NULL);
     g_auto(FlWashes) washes = {0};
     g_assert_true(fl_washes_find(&washes, &input, draws, NULL));
@@ -180,6 +181,23 @@ static void the_fill_stays_the_fill(void)
         if (tones->tone[i] > BARE)
             *(i < W * H / 2 ? &upper : &lower) += (double)tones->tone[i];
     g_assert_cmpfloat(lower, >, upper); // the light comes from above
+}
+
+/* A ground as large as the page has puddles and hues, too. */
+static void a_ground_is_uneven(void)
+{
+    float spread[3];
+    double plays = 0;
+    paper_px = .5f;
+    g_autofree Tones *tones =
+        lay_still("<rect id='g' fill='#5bb7d8' width='400' height='300'/>", &plain, 0);
+    paper_px = 1;
+    spread_of(tones, spread);
+    for (int i = 0; i < W * H; i++)
+        plays += abs(tones->play[i]) / (W * H * (double)FL_PLAY_ONE);
+    g_test_message("ln of amounts from %.2f to %.2f, play %.2f", spread[0], spread[2], plays);
+    g_assert_cmpfloat(spread[2] - spread[0], >, .8f);
+    g_assert_cmpfloat(plays, >, .3);
 }
 
 /* Small shapes, each with a wash of its own: noise makes none darker as a whole, and the light
@@ -1085,6 +1103,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/wash/the-fill-stays-the-fill", the_fill_stays_the_fill);
+    g_test_add_func("/wash/a-ground-is-uneven", a_ground_is_uneven);
     g_test_add_func("/wash/each-of-many-fills-stays", each_of_many_fills_stays);
     g_test_add_func("/wash/light-paint-has-its-light-above", light_paint_has_its_light_above);
     g_test_add_func("/wash/shapes-apart-stay-each", shapes_apart_stay_each);

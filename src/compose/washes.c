@@ -83,7 +83,8 @@ static void put_together(const FlWashField *field)
     const float uneven = .16f + .1f * fl_smooth(field->size / 200 - 1); // puddles need room
     const float large = .5f + .5f * fl_smooth(field->size / 200 - .3f); // short lines are scars
     const float ground = fl_smooth(field->size / 300 - 1);
-    const float quiet = 1 - (.45f + .4f * white_of(field)) * ground; // laid with care, or left bare
+    const float bare = .6f * white_of(field) * ground;
+    const float quiet = 1 - .2f * ground - bare; // laid with care, or left bare
     fl_field_find_pools(field, pool);
     fl_field_find_heart(field, heart);
     fl_field_find_breadth(field, breadth);
@@ -98,7 +99,7 @@ static void put_together(const FlWashField *field)
     }
     for (size_t i = 0; i < n; i++) {
         const float washed = share_at(field, FL_MAP_WASH, i);
-        share_of_hue[i] = .3f + .7f * (quiet * breadth[i]);
+        share_of_hue[i] = .3f + .7f * (1 - bare) * breadth[i];
         breadth[i] *= quiet * washed;
         const float lines = breadth[i] * wash->plane[FL_WASH_LINES][i];
         tone[i] *= breadth[i];
