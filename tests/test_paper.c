@@ -396,7 +396,7 @@ static void heavy_pigments_settle(void)
     const FlArea area = {{0, 0, 4, 1}, NULL};
     int16_t amounts[4] = {1024, 1024, 1024, 1024};
     fl_granulate(.14f, tooth, &area, amounts, play);
-    g_assert_cmpint(amounts[0] - amounts[1], >, 4 * (amounts[2] - amounts[3]));
+    g_assert_cmpint(amounts[0] - amounts[1], >, 5 * (amounts[2] - amounts[3]));
     g_assert_true(play[0] > 70 && play[1] < 58);
     g_assert_cmpint(play[0] - 64, >, 4 * (play[2] + 64));
     g_assert_true(play[2] > -64 - 10 && play[2] < -64 + 15);

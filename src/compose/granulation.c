@@ -38,7 +38,7 @@ static int dry_amount(int amount, int32_t more)
  * and the first one stains, so that grain lies in patches. */
 static int heavy_at(const int8_t *play, int x)
 {
-    return play ? CLAMP(21 + play[x] * 5 / 8, 10, 50) : HEAVY_ONE;
+    return play ? CLAMP(24 + play[x] * 9 / 16, 10, 52) : HEAVY_ONE;
 }
 
 void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t *amounts,
@@ -49,7 +49,7 @@ void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t 
     if (!tooth.height || granulation == 0)
         return;
     fill_strengths(granulation, strength);
-    const int32_t apart = (int32_t)lrintf(granulation * 5500); // of 65536: plays by height
+    const int32_t apart = (int32_t)lrintf(granulation * 2600); // of 65536: plays by height
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < box.height; y++) {
         const FlColumns span = fl_area_row(area, y);

@@ -194,7 +194,7 @@ static float granulation_of(const FlLayerSources *sources, const FlPaintedRegion
     const float share = (float)mixture.share;
     const float heavy =
         (1 - share) * mixture.pigment[0]->granulation + share * mixture.pigment[1]->granulation;
-    return granulation * (.8f + .6f * heavy);
+    return granulation * (.9f + .6f * heavy);
 }
 
 /* Colours a layer by its amounts of paint, once wash and the paper's grain are in them; not in
