@@ -1025,10 +1025,11 @@ static void the_hue_turns_and_most_light_stays(void)
     }
 }
 
-/* Two fields that meet at column 200, wet together: fills and amounts once paint has run. */
+/* Two fields that meet at column 200, wet together: fills, amounts and plays once paint has run. */
 typedef struct Fields {
     uint8_t fills[4 * W * H];
     int16_t amounts[W * H];
+    int8_t plays[W * H];
 } Fields;
 
 static const uint8_t red[3] = {200, 64, 58}, ochre[3] = {232, 178, 58};
@@ -1042,6 +1043,7 @@ static void run_into(Fields *fields, bool right, float strength)
     g_autofree float *planes = g_new(float, 3 * n);
     g_autofree uint8_t *fills = g_new(uint8_t, 4 * n);
     g_autofree int16_t *amounts = g_new(int16_t, n);
+    g_autofree int8_t *plays = g_new(int8_t, n);
     const FlContact contact = {.strength = strength,
                                .reach_px = 30 * strength,
                                .style = &front,
@@ -1059,14 +1061,15 @@ static void run_into(Fields *fields, bool right, float strength)
         const int x = (int)i % 200, y = (int)i / 200;
         planes[i] = (float)(right ? x : 199 - x), planes[n + i] = 200, planes[2 * n + i] = (float)y;
         memcpy(fills + 4 * i, right ? ochre : red, 3);
-        amounts[i] = 1024;
+        amounts[i] = 1024, plays[i] = right ? -90 : 90;
     }
     const uint8_t *other = right ? red : ochre;
-    const FlRunning to = {{other[0], other[1], other[2]}, amounts, fills, NULL};
+    const FlRunning to = {{other[0], other[1], other[2]}, amounts, plays, fills, NULL};
     fl_contact_lay(&contact, &area, &to);
     for (int y = 0; y < H; y++) {
         memcpy(fields->fills + 4 * (y * W + box.x), fills + (size_t)(800 * y), 800);
         memcpy(fields->amounts + y * W + box.x, amounts + 200 * y, 400);
+        memcpy(fields->plays + y * W + box.x, plays + 200 * y, 200);
     }
 }
 
@@ -1080,7 +1083,7 @@ static float ochre_at(const Fields *fields, int x, int y)
 static void wet_fields_run_into_each_other(void)
 {
     g_autofree Fields *fields = g_new0(Fields, 1);
-    int found = 0, of_red = 0, of_ochre = 0;
+    int found = 0, of_red = 0, of_ochre = 0, ran = 0, step = 0;
     run_into(fields, false, 1);
     run_into(fields, true, 1);
     for (int y = 0; y < H; y++) {
@@ -1088,11 +1091,16 @@ static void wet_fields_run_into_each_other(void)
         g_assert_cmpfloat(ochre_at(fields, 130, y), ==, 0);
         g_assert_cmpfloat(ochre_at(fields, 270, y), ==, 1);
         g_assert_cmpint(fields->amounts[y * W + 130], ==, 1024);
+        g_assert_cmpint(fields->plays[y * W + 130], ==, 90);
         const bool left = ochre_at(fields, 195, y) > .15f, right = ochre_at(fields, 204, y) < .85f;
         found += !left && !right, of_ochre += left && !right, of_red += right && !left;
+        ran += left != right;
+        step += left != right ? fields->plays[y * W + 199] - fields->plays[y * W + 200] : 0;
     }
     g_test_message("of %d rows found %d, run over by red %d, by ochre %d", H, found, of_red,
                    of_ochre);
+    g_test_message("the balance of the pigments changes by %d at their edge", step / ran);
+    g_assert_cmpint(step, <, 45 * ran); // of 180: the hues of the washes are lost there
     g_assert_cmpint(found, >, H / 20);
     g_assert_cmpint(found, <, H / 2);
     g_assert_cmpint(of_red, >, H / 20);

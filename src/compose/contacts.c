@@ -111,9 +111,9 @@ static float exp_of(float x)
     return x > 0 ? 1 / fl_fall(x) : fl_fall(-x);
 }
 
-/* n pixels of the frame from (x, y) on, whose first one is pixel p of the box; mean: amount. */
-static void lay_pixels(const FlContact *contact, const FlRunning *to, float mean, int x, int y,
-                       int n, size_t p)
+/* n pixels of the frame from (x, y) on, whose first one is pixel p of the box. Both washes fade
+ * where the edge is lost, and so leave no line at it. */
+static void lay_pixels(const FlContact *contact, const FlRunning *to, int x, int y, int n, size_t p)
 {
     Edge edge = {0}; // cppcheck does not see that rows are filled
     const float most = 2 * contact->reach_px;
@@ -137,31 +137,19 @@ static void lay_pixels(const FlContact *contact, const FlRunning *to, float mean
             continue;
         const Run run = run_at(contact, &edge, i);
         const float own = (float)to->amounts[p];
-        const float even = own + run.lost * (mean - own);
+        const float even = own + run.lost * (FL_AMOUNT_ONE - own);
         to->amounts[p] = (int16_t)fl_clamp(even * exp_of(run.tone) + .5f, 0, FL_AMOUNTS - 1);
         mix_in(to->fills + 4 * p, to->other, (int)(SHARES * run.share + .5f));
+        if (to->play)
+            to->play[p] = (int8_t)((1 - run.lost) * to->play[p]);
         if (to->knockout)
             to->knockout[p] += (uint8_t)(run.lost * (float)(255 - to->knockout[p]));
     }
 }
 
-/* The mean amount of the pixels of an area that have paint. */
-static float mean_amount(const FlArea *area, const int16_t *amounts)
-{
-    int64_t sum = 0, n = 1;
-    for (int y = 0; y < area->box.height; y++) {
-        const FlColumns span = fl_area_row(area, y);
-        const int16_t *row = amounts + (size_t)y * (size_t)area->box.width;
-        for (int x = span.first; x < span.last; x++)
-            sum += MAX(row[x], 0), n += row[x] >= 0;
-    }
-    return (float)sum / (float)n;
-}
-
 void fl_contact_lay(const FlContact *contact, const FlArea *area, const FlRunning *to)
 {
     const FlRect both = fl_rect_and(contact->box, area->box);
-    const float mean = mean_amount(area, to->amounts);
 #pragma omp parallel for schedule(dynamic, 8) if (fl_schedule_worth_threads(fl_rect_pixels(both)))
     for (int y = both.y; y < both.y + both.height; y++) {
         const FlColumns span = fl_area_row(area, y - area->box.y);
@@ -169,7 +157,7 @@ void fl_contact_lay(const FlContact *contact, const FlArea *area, const FlRunnin
         const int first = MAX(area->box.x + span.first, both.x);
         const int last = MIN(area->box.x + span.last, both.x + both.width);
         for (int x = first; x < last; x += FL_NOISE_ROW)
-            lay_pixels(contact, to, mean, x, y, MIN(FL_NOISE_ROW, last - x),
+            lay_pixels(contact, to, x, y, MIN(FL_NOISE_ROW, last - x),
                        row + (size_t)(x - area->box.x));
     }
 }

@@ -35,6 +35,7 @@ void fl_contacts_clear(FlContacts *contacts);
 typedef struct FlRunning {
     uint8_t other[3];  // colour of the paint that runs
     int16_t *amounts;  // of paint, which gathers at the tips of the fingers that have run
+    int8_t *play;      // of its pigments, see fl_wash_lay(); NULL: it has no wash
     uint8_t *fills;    // RGBA: become mixtures of both colours
     uint8_t *knockout; // rises where the rim is lost; NULL: the layer has none
 } FlRunning;

@@ -154,8 +154,8 @@ static uint8_t *fills_of(const FlLayer *layer, const FlColouring *colouring, GEr
 /* Lets the paint of neighbours run into a layer. Returns: true with the fills of its pixels, or
  * NULL if no neighbour is wet with it. */
 static bool run_together(const FlLayer *layer, const FlLayerSources *sources, int r,
-                         const FlColouring *colouring, int16_t *amounts, uint8_t **fills,
-                         GError **error)
+                         const FlColouring *colouring, int16_t *amounts, int8_t *play,
+                         uint8_t **fills, GError **error)
 {
     const FlComposeInput *input = sources->input;
     const FlDrawList *draws = sources->cover->draws;
@@ -173,8 +173,11 @@ static bool run_together(const FlLayer *layer, const FlLayerSources *sources, in
         if (!*fills && !(*fills = fills_of(layer, colouring, error)))
             return false;
         const FlColouring colour = colouring_of(sources, runs, other);
-        const FlRunning to = {
-            {colour.fill[0], colour.fill[1], colour.fill[2]}, amounts, *fills, layer->knockout};
+        const FlRunning to = {{colour.fill[0], colour.fill[1], colour.fill[2]},
+                              amounts,
+                              play,
+                              *fills,
+                              layer->knockout};
         fl_contact_lay(contact, &layer->area, &to);
     }
     return true;
@@ -213,7 +216,7 @@ static bool colour_layer(FlLayer *layer, const FlLayerSources *sources, int r,
             return false;
         fl_wash_lay(wash, white, &layer->area, amounts, play);
     }
-    if (!run_together(layer, sources, r, colouring, amounts, &fills, error))
+    if (!run_together(layer, sources, r, colouring, amounts, play, &fills, error))
         return false;
     if (painted->settings->tint != FL_TINT_KEEP && marks_of(painted) <= FL_MARKS_OFF)
         fl_granulate(granulation_of(sources, painted, white), sources->input->tooth, &layer->area,
