@@ -21,11 +21,11 @@ keyed() {
 dry=('front = 0' 'stain = 0')
 keyed whole 'carry = 1@1 1@6' && paint plain -s "$style" && same whole plain
 result $? 'keys of one value paint what the value does'
-keyed loaded "${dry[@]}" 'load = 0@2 1@4'
-for pair in 1:0 2:0 3:0.5 4:1 6:1; do
-    keyed "load_${pair#*:}" "${dry[@]}" "load = ${pair#*:}"
-    same "loaded/w_000${pair%:*}.png" "load_${pair#*:}/w_000${pair%:*}.png" >out 2>err
-    result $? "load is ${pair#*:} in frame ${pair%:*} of 0@2 1@4"
+keyed washed "${dry[@]}" 'wash = 0@2 2@4'
+for pair in 1:0 2:0 3:1 4:2 6:2; do
+    keyed "wash_${pair#*:}" "${dry[@]}" "wash = ${pair#*:}"
+    same "washed/w_000${pair%:*}.png" "wash_${pair#*:}/w_000${pair%:*}.png" >out 2>err
+    result $? "wash is ${pair#*:} in frame ${pair%:*} of 0@2 2@4"
 done
 keyed still "${dry[@]}" 'carry = 0@3 1@4' && keyed carried "${dry[@]}" 'carry = 0' &&
     same still/w_0003.png carried/w_0003.png && ! same still/w_0004.png carried/w_0004.png
@@ -39,7 +39,7 @@ keyed runs 'wet-with = all' 'bleed = 0@1 0@3 1@5' && same runs/w_0003.png whole/
 result $? 'neighbours that are wet together run into each other from the key on'
 ! paint bad -s "$style" --wet-with no-such && says 'wet-with: no region “no-such”'
 result $? 'wet-with names regions'
-paint late -c loaded.conf -f 3-6 && paint later -c load_0.5.conf -f 3-6 && same late/w_0003.png later/w_0003.png
+paint late -c washed.conf -f 3-6 && paint later -c wash_1.conf -f 3-6 && same late/w_0003.png later/w_0003.png
 result $? 'keys stand at the numbers of --frames, wherever a range begins'
 
 # fate NAME CONFIG ARGUMENT...: the config gives the same frames in other ways.
@@ -70,7 +70,7 @@ fate() {
     result $? "$name: the same from the cache"
 }
 
-config dials 'carry = 0.2@1 1@5' 'w-temp = 5@2 20@6' 'load = 0.2@1 1@6' 'front = 0.2@1 1.5@6' 'wet-with = blue-2255aa' \
+config dials 'carry = 0.2@1 1@5' 'w-temp = 5@2 20@6' 'wash = 0.4@1 2@6' 'front = 0.2@1 1.5@6' 'wet-with = blue-2255aa' \
     'granulation = -1@1 1@6'
 fate dials dials
 fate held dials --hold 2

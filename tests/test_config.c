@@ -194,7 +194,7 @@ static double carry_at(FlRegionSettings *settings, int frame)
 
 static void keyed_numbers_are_linear_between_keys(void)
 {
-    g_autoptr(FlConfig) config = load("[defaults]\ncarry = 0.25@-4 0.75@4  0.5@6\nload = 0@1 1@3\n"
+    g_autoptr(FlConfig) config = load("[defaults]\ncarry = 0.25@-4 0.75@4  0.5@6\nwash = 0@1 1@3\n"
                                       "[region b]\ncarry = 0.5\n[region c]\npreset = thesis\n");
     g_auto(FlRegionSettings) a, b, c;
     fl_config_region_settings(config, -1, "a", NULL, &a);
@@ -202,12 +202,12 @@ static void keyed_numbers_are_linear_between_keys(void)
     fl_config_region_settings(config, 1, "c", NULL, &c);
     static const struct {
         int frame;
-        double carry, load;
+        double carry, wash;
     } expected[] = {{-9, .25, 0}, {-4, .25, 0}, {0, .5, 0}, {2, .625, .5},
                     {4, .75, 1},  {5, .625, 1}, {99, .5, 1}};
     for (size_t k = 0; k < G_N_ELEMENTS(expected); k++) {
         g_assert_cmpfloat(carry_at(&a, expected[k].frame), ==, expected[k].carry);
-        g_assert_cmpfloat(a.load, ==, expected[k].load);
+        g_assert_cmpfloat(a.wash, ==, expected[k].wash);
     }
     g_assert_cmpfloat(carry_at(&b, 4), ==, .5); // a later plain value takes the keys away
     g_assert_cmpfloat(carry_at(&c, 4), ==, 0);  // and so does a preset

@@ -234,10 +234,10 @@ static bool make_wash(const FlWashes *washes, int w, const FlComposeInput *input
 
 /* ---- a frame --------------------------------------------------------------------------------- */
 
-/* The value of a setting, by its newer word, else its older one, else the style. */
-static float said(double dial, double older, float of_style)
+/* The value of a setting, or the style's. */
+static float said(double dial, float of_style)
 {
-    return !isnan(dial) ? (float)dial : !isnan(older) ? (float)older : of_style;
+    return isnan(dial) ? of_style : (float)dial;
 }
 
 FlWashStyle fl_wash_style_of(const FlPaintedRegion *painted)
@@ -246,14 +246,14 @@ FlWashStyle fl_wash_style_of(const FlPaintedRegion *painted)
     const FlWashStyle *style = &painted->style->wash;
     if (t->tint == FL_TINT_KEEP)
         return (FlWashStyle){0};
-    return (FlWashStyle){.wash = said(t->wash, 5 * t->load, style->wash),
-                         .passes = said(t->passes, NAN, style->passes),
-                         .tide = said(t->tide, NAN, style->tide),
-                         .pool = said(t->pool, NAN, style->pool),
-                         .blooms = said(t->blooms, NAN, style->blooms),
-                         .calm = said(t->calm, NAN, style->calm),
+    return (FlWashStyle){.wash = said(t->wash, style->wash),
+                         .passes = said(t->passes, style->passes),
+                         .tide = said(t->tide, style->tide),
+                         .pool = said(t->pool, style->pool),
+                         .blooms = said(t->blooms, style->blooms),
+                         .calm = said(t->calm, style->calm),
                          .heart = style->heart,
-                         .hue = said(t->hue, 72 * t->pigments, style->hue)};
+                         .hue = said(t->hue, style->hue)};
 }
 
 /* The mean of a region's styles, by their shares in the frame. */

@@ -492,29 +492,6 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     return true;
 }
 
-/* The option that a region names by an older word; NULL: by none. */
-static const char *older_word(const FlRegionSettings *settings)
-{
-    return settings->older_preset   ? "the preset “fluid” is called “lazyfluids-steady” now"
-           : !isnan(settings->load) ? "‘load’ is ‘wash’ now, which is five times as much"
-           : !isnan(settings->pigments) ? "‘pigments’ is ‘hue’ now, which is 72 times as much"
-                                        : NULL;
-}
-
-/* Names an older word once. */
-static void note_older_word(const FlPlan *plan)
-{
-    const FlShapes *shapes = &plan->shapes;
-    for (int p = 0; p < shapes->n_painted; p++) {
-        const char *word = older_word(&shapes->painted[p].settings);
-        if (!word)
-            continue;
-        fl_note(&plan->caller, "region %s: %s; the older word goes with the next release",
-                shapes->painted[p].name, word);
-        return;
-    }
-}
-
 bool fl_plan_choose_styles(FlPlan *plan, GError **error)
 {
     FlShapes *shapes = &plan->shapes;
@@ -529,7 +506,6 @@ bool fl_plan_choose_styles(FlPlan *plan, GError **error)
             return false;
     if (!check_maps(shapes, error) || !warn_of_borders(plan, error))
         return false;
-    note_older_word(plan);
     memset(plan->paper, 255, sizeof plan->paper);
     plan->sheet = (FlSheetStyle)FL_SHEET_DEFAULTS;
     if (shapes->n_painted > 0 && shapes->surround) {

@@ -58,6 +58,3 @@ static inline int fl_list_at(const FlIntList *list, int from_coarsest)
 
 /** The names of the presets, NULL-terminated; static storage. */
 extern const char *const fl_preset_names[];
-
-/** Returns: the name of the preset of an older word; any other word itself. */
-const char *fl_preset_word(const char *word);

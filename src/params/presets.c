@@ -70,14 +70,8 @@ void fl_params_scale_lengths(FlParams *params, float px)
     params->flow_still *= px;
 }
 
-const char *fl_preset_word(const char *word)
+bool fl_params_preset(FlParams *params, const char *preset, GError **error)
 {
-    return strcmp(word, "fluid") == 0 ? "lazyfluids-steady" : word;
-}
-
-bool fl_params_preset(FlParams *params, const char *word, GError **error)
-{
-    const char *preset = fl_preset_word(word);
     for (int i = 0; fl_preset_names[i]; i++)
         if (strcmp(fl_preset_names[i], preset) == 0) {
             set_preset(params, i);

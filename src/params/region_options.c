@@ -115,9 +115,8 @@ static bool store(FlRegionSettings *settings, const FlOption *option, const char
     }
 }
 
-static bool set_preset(FlRegionSettings *settings, const char *word, GError **error)
+static bool set_preset(FlRegionSettings *settings, const char *value, GError **error)
 {
-    const char *value = fl_preset_word(word);
     if (!fl_params_preset(&settings->params, value, error))
         return false;
     drop_keys(settings, NULL);
@@ -126,7 +125,6 @@ static bool set_preset(FlRegionSettings *settings, const char *word, GError **er
     const bool steady = strcmp(value, "lazyfluids-steady") == 0;
     const bool ours = steady || strcmp(value, "default") == 0;
     const bool lazy = steady || strcmp(value, "lazyfluids") == 0;
-    settings->older_preset = value != word;
     settings->engine = lazy                                       ? FL_ENGINE_LAZYFLUIDS
                        : settings->engine == FL_ENGINE_LAZYFLUIDS ? FL_ENGINE_AUTO
                                                                   : settings->engine;
@@ -134,7 +132,6 @@ static bool set_preset(FlRegionSettings *settings, const char *word, GError **er
     settings->granulation = ours ? plain.granulation : 0;
     settings->wash = ours ? plain.wash : 0;
     settings->hue = ours ? plain.hue : 0;
-    settings->load = settings->pigments = NAN;
     settings->marks = ours ? plain.marks : FL_MARKS_OFF;
     settings->front = ours ? plain.front : 0;
     settings->stain = ours ? plain.stain : 0;

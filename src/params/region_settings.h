@@ -130,7 +130,6 @@ typedef struct FlRegionSettings {
     double wash;        // of FlWashStyle, as those below; NAN: the style's
     double light;       // the side on which the shadow lies, degrees; 90: below
     double hue, passes, tide, pool, blooms, calm;
-    double load, pigments; // older words: wash / 5 and hue / 72; NAN: not said
     FlPalette palette;
     FlMarks marks;      // FL_MARKS_AUTO: the style's
     double marks_angle; // direction of the strokes, degrees; 90: down; NAN: the shape's axis
@@ -155,8 +154,7 @@ typedef struct FlRegionSettings {
     char *merge_with;   // another region's name, or NULL
     char *map[FL_MAPS]; // paths or patterns of control maps, with {region} perhaps; or NULL
     FlParams params;
-    bool older_preset; // its preset was chosen by an older word
-    GPtrArray *keyed;  // of FlKeys: options whose fields have the first key's value; NULL: none
+    GPtrArray *keyed; // of FlKeys: options whose fields have the first key's value; NULL: none
 } FlRegionSettings;
 
 void fl_region_settings_init(FlRegionSettings *settings); // the defaults

@@ -347,9 +347,8 @@ static const Variant methods[] = {
      {{.name = "engine", .value = "transport"}, {.name = "style", .value = "pools"}}},
 };
 
-static const Variant *find_method(const char *word, GError **error)
+static const Variant *find_method(const char *name, GError **error)
 {
-    const char *name = fl_preset_word(word);
     const char *names[G_N_ELEMENTS(methods) + 1] = {NULL};
     for (size_t k = 0; k < G_N_ELEMENTS(methods); k++) {
         names[k] = methods[k].name;
@@ -370,8 +369,6 @@ static bool read_method(const char *text, char **parts, Variant *variant, GError
         return false;
     *variant = *method;
     variant->name = text;
-    if (fl_preset_word(parts[0]) != parts[0]) // the plan notes an older word
-        variant->setting[0].value = parts[0];
     for (int k = 1; parts[k]; k++) {
         char *value = strchr(parts[k], '=');
         if (!value || variant->n == SETTINGS_MOST)
