@@ -32,7 +32,7 @@ static Read read_frame(void)
     g_autofree char *file = scratch_write(read.folder, "f1.svg", SVG);
     const FlRequest request = {
         .verb = FL_VERB_SURVEY, .file = file, .number = 1, .scale = 1, .width = 40, .height = 30};
-    g_assert_true(fl_survey_frame(&request, NULL, &read.frame, &read.strings, NULL, &error));
+    g_assert_true(fl_survey_frame(&request, &read.frame, &read.strings, NULL, &error));
     g_assert_no_error(error);
     return read;
 }

@@ -115,7 +115,6 @@ static GByteArray *refuse(const char *lack)
 G_GNUC_NORETURN static void work(const FlProcess *process, FlReader told)
 {
     FlTicket ticket;
-    FlServant servant = {0};
     bool required = false;
     reset_signals();
     const unsigned given_up = obey(told, &required);
@@ -124,7 +123,7 @@ G_GNUC_NORETURN static void work(const FlProcess *process, FlReader told)
         size_t bytes = 0;
         limit_time(fl_limit(FL_LIMIT_SECONDS));
         g_autofree uint8_t *data = fl_memory_file_get(process->memory, &bytes);
-        g_autoptr(GByteArray) out = lack ? refuse(lack) : fl_serve(&servant, data, bytes);
+        g_autoptr(GByteArray) out = lack ? refuse(lack) : fl_serve(data, bytes);
         ticket.given_up = given_up;
         if (!fl_memory_file_set(process->memory, out->data, out->len))
             _exit(CLAMP(errno, 1, 255));

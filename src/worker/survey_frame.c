@@ -53,7 +53,6 @@ void fl_survey_frame_clear(FlSurveyFrame *frame)
 /** The survey of one frame in progress. */
 typedef struct Survey {
     const FlRequest *request;
-    FlSvg *svg; // opened already; NULL: not
     FlSurveyFrame *frame;
     FlWarnings *warnings;
 } Survey;
@@ -73,9 +72,7 @@ static bool open_frame(Survey *s, FlFrameProbe *probe, GError **error)
     const FlRequest *r = s->request;
     FlSvgOptions options = r->svg;
     options.whole = (const char *const *)s->frame->whole;
-    g_autoptr(FlSvg) svg = g_steal_pointer(&s->svg);
-    if (!svg)
-        svg = fl_svg_open(r->file, r->number, &options, s->warnings, error);
+    g_autoptr(FlSvg) svg = fl_svg_open(r->file, r->number, &options, s->warnings, error);
     if (!svg || !fl_svg_size(svg, &width, &height, error))
         return false;
     s->frame->page = (FlPageSize){width * r->scale, height * r->scale};
@@ -212,16 +209,15 @@ static bool scan_frame(Survey *s, FlFrameProbe *f, GError **error)
     }
 }
 
-bool fl_survey_frame(const FlRequest *request, FlSvg *svg, FlSurveyFrame *frame, FlStrings *strings,
+bool fl_survey_frame(const FlRequest *request, FlSurveyFrame *frame, FlStrings *strings,
                      FlWarnings *warnings, GError **error)
 {
     *frame = (FlSurveyFrame){.whole = g_strdupv((char **)request->svg.whole)};
     fl_strings_add(strings, "");
-    Survey s = {request, svg, frame, warnings};
+    Survey s = {request, frame, warnings};
     g_auto(FlFrameProbe) probe = {0};
     const bool good = scan_frame(&s, &probe, error);
     if (good)
         keep(&probe, strings, frame);
-    fl_svg_free(s.svg);
     return good;
 }

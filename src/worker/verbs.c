@@ -2,19 +2,6 @@
 
 #include "base/error.h"
 #include "svg/geometry.h"
-#include <string.h>
-
-static void forget_measured(FlServant *servant)
-{
-    g_clear_pointer(&servant->measured, fl_svg_free);
-    g_clear_pointer(&servant->file, g_free);
-    g_clear_pointer(&servant->remarks, fl_warnings_free);
-}
-
-void fl_servant_clear(FlServant *servant)
-{
-    forget_measured(servant);
-}
 
 /* ---- count and measure ----------------------------------------------------------------------- */
 
@@ -43,50 +30,28 @@ static void add_shape(GArray *shapes, FlSvg *svg, const FlLeaf *leaf, FlPageSize
         g_array_append_val(shapes, shape);
 }
 
-static bool measure(FlServant *servant, const FlRequest *r, GByteArray *out, GError **error)
+static bool measure(const FlRequest *r, GByteArray *out, GError **error)
 {
     g_autoptr(GArray) shapes = g_array_new(FALSE, FALSE, sizeof(FlShape));
+    g_autoptr(FlSvg) svg = fl_svg_open(r->file, r->number, &r->svg, NULL, error);
     FlPageMeasures m = {.shapes = shapes};
-    forget_measured(servant);
-    servant->remarks = fl_warnings_new();
-    servant->measured = fl_svg_open(r->file, r->number, &r->svg, servant->remarks, error);
-    if (!servant->measured || !fl_svg_size(servant->measured, &m.width, &m.height, error))
+    if (!svg || !fl_svg_size(svg, &m.width, &m.height, error))
         return false;
-    const GArray *leaves = fl_svg_leaves(servant->measured)->leaf;
+    const GArray *leaves = fl_svg_leaves(svg)->leaf;
     for (guint i = 0; r->shapes && i < leaves->len; i++)
-        add_shape(shapes, servant->measured, &g_array_index(leaves, FlLeaf, i),
-                  (FlPageSize){m.width, m.height});
+        add_shape(shapes, svg, &g_array_index(leaves, FlLeaf, i), (FlPageSize){m.width, m.height});
     fl_measures_pack(&m, out);
-    servant->file = g_strdup(r->file);
-    servant->svg = r->svg;
     return true;
-}
-
-static bool is_same_canvas(const FlCanvas *a, const FlCanvas *b)
-{
-    return a->x == b->x && a->y == b->y && a->width == b->width && a->height == b->height;
-}
-
-/** True if a request is about the frame that was measured. */
-static bool is_measured(const FlServant *servant, const FlRequest *r)
-{
-    const FlSvgOptions *a = &servant->svg, *b = &r->svg;
-    return servant->file && strcmp(servant->file, r->file) == 0 && !b->whole &&
-           is_same_canvas(&a->canvas, &b->canvas) && a->dpi == b->dpi && a->from == b->from &&
-           a->layer == b->layer && a->seconds == b->seconds;
 }
 
 /* ---- survey, outlines, draw ------------------------------------------------------------------ */
 
-static bool survey(FlServant *servant, const FlRequest *r, GByteArray *out, GError **error)
+static bool survey(const FlRequest *r, GByteArray *out, GError **error)
 {
     g_auto(FlStrings) strings = {0};
     g_auto(FlSurveyFrame) frame = {0};
-    const bool open = is_measured(servant, r);
-    g_autoptr(FlWarnings) warnings = open ? g_steal_pointer(&servant->remarks) : fl_warnings_new();
-    FlSvg *svg = open ? g_steal_pointer(&servant->measured) : NULL;
-    forget_measured(servant);
-    if (!fl_survey_frame(r, svg, &frame, &strings, warnings, error))
+    g_autoptr(FlWarnings) warnings = fl_warnings_new();
+    if (!fl_survey_frame(r, &frame, &strings, warnings, error))
         return false;
     fl_survey_pack(&frame, &strings, warnings, out);
     return true;
@@ -113,15 +78,15 @@ static bool draw(const FlRequest *r, GByteArray *out, GError **error)
     return packed != NULL;
 }
 
-static bool answer(FlServant *servant, const FlRequest *r, GByteArray *out, GError **error)
+static bool answer(const FlRequest *r, GByteArray *out, GError **error)
 {
     switch (r->verb) {
     case FL_VERB_COUNT:
         return count(r, out, error);
     case FL_VERB_MEASURE:
-        return measure(servant, r, out, error);
+        return measure(r, out, error);
     case FL_VERB_SURVEY:
-        return survey(servant, r, out, error);
+        return survey(r, out, error);
     case FL_VERB_OUTLINES:
         return outline(r, out, error);
     default:
@@ -129,7 +94,7 @@ static bool answer(FlServant *servant, const FlRequest *r, GByteArray *out, GErr
     }
 }
 
-GByteArray *fl_serve(FlServant *servant, const void *bytes, size_t n)
+GByteArray *fl_serve(const void *bytes, size_t n)
 {
     FlReader reader = fl_reader_over(bytes, n);
     FlHand hand; /* the request holds on to it */
@@ -140,7 +105,7 @@ GByteArray *fl_serve(FlServant *servant, const void *bytes, size_t n)
     if (!fl_request_unpack(&reader, &request, &hand))
         g_set_error(&problem, FL_ERROR, FL_ERROR_INPUT, "a request is damaged");
     else
-        (void)answer(servant, &request, out, &problem);
+        (void)answer(&request, out, &problem);
     if (problem)
         fl_answer_pack_error(out, problem);
     return out;

@@ -379,8 +379,7 @@ bool fl_workers_ask(FlWorkers *workers, const FlRequest *request, const FlFileWa
     bool killed = false;
     fl_request_pack(request, bytes);
     if (!workers->orders) {
-        g_auto(FlServant) servant = {0};
-        g_autoptr(GByteArray) out = fl_serve(&servant, bytes->data, bytes->len);
+        g_autoptr(GByteArray) out = fl_serve(bytes->data, bytes->len);
         return open_answer(answer, g_memdup2(out->data, out->len), out->len, request, error);
     }
     // all may have been killed while they waited, and one more once it was started anew
