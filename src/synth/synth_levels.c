@@ -102,22 +102,10 @@ static void vote(FlSynth *synth, const FlSearch *search, FlTargetLevel *target)
     synth->seconds_vote += fl_lap(&time);
 }
 
-/* The search reads the blend alone: colours and T_temp are not needed after the last one. */
-static void drop_blended(const FlSynth *synth, FlTargetLevel *target)
-{
-    if (synth->wants_energies || synth->wants_view)
-        return;
-    g_clear_pointer(&target->temporal, free);
-    g_clear_pointer(&target->colour, free);
-}
-
-/* last: the level's last blend. */
-static void vote_and_blend(FlSynth *synth, const FlSearch *search, FlTargetLevel *target, bool last)
+static void vote_and_blend(FlSynth *synth, const FlSearch *search, FlTargetLevel *target)
 {
     vote(synth, search, target);
     fl_target_blend(target, search->params, search->scale, search->params->w_texture);
-    if (last)
-        drop_blended(synth, target);
 }
 
 /* The costs of the field must be those of the target as it is, unless they are `stale`. */
@@ -145,7 +133,7 @@ static void copy_blocks(const FlNnf *from, const FlBlocks *blocks, FlNnf *to)
 
 /* Initialises the field of a level: from the coarser level, which may then be freed, from the
  * previous frame, or at random. */
-static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int l, int rounds,
+static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int l,
                        const FlNnf *previous)
 {
     const FlParams *params = synth->params;
@@ -165,7 +153,7 @@ static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
     }
     if (l < fl_synth_finest_searched(synth))
         return;
-    vote_and_blend(synth, search, target, rounds == 1);
+    vote_and_blend(synth, search, target);
     fl_search_costs(search, coarsest ? NULL : previous);
 }
 
@@ -186,20 +174,6 @@ static void clear_colours(const FlSynth *synth, FlTargetLevel *level)
     }
 }
 
-/* Votes for the picture, or for energies. */
-static bool last_vote(FlSynth *synth, const FlSearch *search, FlTargetLevel *target, GError **error)
-{
-    if (!target->colour) {
-        const size_t values = 3 * (size_t)target->width * target->height;
-        target->colour = fl_alloc_unset(values, sizeof *target->colour, "a target", error);
-        if (!target->colour)
-            return false;
-        clear_colours(synth, target);
-    }
-    vote(synth, search, target);
-    return true;
-}
-
 /* Search and vote in turn [F21 alg. 2]; the field comes with its costs. The next level votes anew,
  * so that the last vote is for the finest level's picture, or for energies. */
 static bool optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int rounds,
@@ -218,9 +192,9 @@ static bool optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, in
         stats->counts.tried += counts.tried;
         stats->counts.accepted += counts.accepted;
         if (!last)
-            vote_and_blend(synth, search, target, round + 2 == rounds);
-        else if (last_counts && !last_vote(synth, search, target, error))
-            return false;
+            vote_and_blend(synth, search, target);
+        else if (last_counts)
+            vote(synth, search, target);
     }
     search->key = key;
     return true;
@@ -294,7 +268,7 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
         : shifted ? fl_list_at(&params->next_iterations, from_coarsest)
                   : fl_list_at(&params->opt_iterations, from_coarsest) * params->first_rounds;
     clear_colours(synth, target);
-    initialise(synth, &search, target, l, rounds, previous);
+    initialise(synth, &search, target, l, previous);
     *stats = (FlLevelStats){.width = target->width, .height = target->height, .rounds = rounds};
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
     stats->energy_start = synth->wants_energies ? mean_energy(&search) : 0;
