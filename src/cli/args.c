@@ -31,11 +31,9 @@ static bool check_contradiction(const FlArgs *args, const FlOption *option, GErr
         if (other == option || other->scope != FL_SCOPE_RENDER || other->offset != option->offset)
             continue;
         g_autofree char *given = fl_option_get(other, &args->render);
-        if (given && g_str_has_suffix(other->value, given)) {
-            g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "--%s and --%s contradict each other",
-                        other->name, option->name);
-            return false;
-        }
+        if (given && g_str_has_suffix(other->value, given))
+            return fl_fail(error, FL_ERROR_USAGE, "--%s and --%s contradict each other",
+                           other->name, option->name);
     }
     return true;
 }
@@ -46,10 +44,9 @@ static char *add_config(const char *before, const char *name, const char *value,
     const bool first = strchr(before, ';') && g_file_test(before, G_FILE_TEST_EXISTS);
     if (!first && !strchr(value, ';'))
         return g_strconcat(before, ";", value, NULL);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "%s: “%s” has a semicolon in its name; expected no other config besides it", name,
-                first ? before : value);
-    return NULL;
+    return fl_none(error, FL_ERROR_USAGE,
+                   "%s: “%s” has a semicolon in its name; expected no other config besides it",
+                   name, first ? before : value);
 }
 
 /* The options of a render. */
@@ -98,11 +95,9 @@ static gboolean read_look(const char *name, const char *value, gpointer data, GE
 {
     FlArgs *args = data;
     const char *after = args->render.config;
-    if (!fl_look_named(value)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s”: expected a look, FILE.fluidy", name,
-                    value);
-        return FALSE;
-    }
+    if (!fl_look_named(value))
+        return fl_fail(error, FL_ERROR_USAGE, "%s: “%s”: expected a look, FILE.fluidy", name,
+                       value);
     g_autofree char *configs = after ? add_config(value, name, after, error) : g_strdup(value);
     if (configs)
         args->render.config = keep(args, configs);
@@ -131,14 +126,13 @@ static gboolean read_map(const char *name, const char *value, gpointer data, GEr
         return TRUE;
     }
     const bool scale = dial && strstr(dial, "scale");
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                scale
-                    ? "%s: “%s”: the exemplar has one size in a region; maps are of carry, "
-                      "strength, wash, calm, front and stain"
-                    : "%s: “%s” is not DIAL=PICTURES; expected carry, strength, wash, calm, front "
-                      "or stain and its pictures, such as front=front_%%04d.png",
-                name, value);
-    return FALSE;
+    return fl_fail(
+        error, FL_ERROR_USAGE,
+        scale ? "%s: “%s”: the exemplar has one size in a region; maps are of carry, "
+                "strength, wash, calm, front and stain"
+              : "%s: “%s” is not DIAL=PICTURES; expected carry, strength, wash, calm, front "
+                "or stain and its pictures, such as front=front_%%04d.png",
+        name, value);
 }
 
 /* --preview N: drafts of a frame and its neighbours, which the next preview may replace. */
@@ -146,10 +140,8 @@ static gboolean read_preview(const char *name, const char *value, gpointer data,
 {
     FlArgs *args = data;
     int number;
-    if (!fl_text_integer(value, 0, G_MAXINT / 2, &number)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s” is not a frame number", name, value);
-        return FALSE;
-    }
+    if (!fl_text_integer(value, 0, G_MAXINT / 2, &number))
+        return fl_fail(error, FL_ERROR_USAGE, "%s: “%s” is not a frame number", name, value);
     g_autofree char *range = g_strdup_printf("%d~1", number);
     args->preview = keep(args, range);
     return TRUE;
@@ -165,8 +157,8 @@ static gboolean read_names(const char *name, const char *value, FlArgs *args, co
         if (!*args->variants[i])
             value = "";
     if (!*value)
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: expected names separated by commas, such as %s", name, such_as);
+        fl_fail(error, FL_ERROR_USAGE, "%s: expected names separated by commas, such as %s", name,
+                such_as);
     return *value != '\0';
 }
 
@@ -212,11 +204,9 @@ static gboolean read_serve(const char *name, const char *value, gpointer data, G
 {
     FlArgs *args = data;
     const FlOption *option = option_named(name);
-    if (!fl_text_integer(value, option->min, option->max, &args->port)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s” is not a port from %g to %g", name,
-                    value, option->min, option->max);
-        return FALSE;
-    }
+    if (!fl_text_integer(value, option->min, option->max, &args->port))
+        return fl_fail(error, FL_ERROR_USAGE, "%s: “%s” is not a port from %g to %g", name, value,
+                       option->min, option->max);
     args->task = FL_COMMAND_SERVE;
     return TRUE;
 }
@@ -383,8 +373,7 @@ static bool list_input(FlArgs *args, GError **error)
     g_strfreev(args->inputs);
     args->inputs = (char **)g_ptr_array_steal(inputs, NULL);
     if (!listed)
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "-: standard input lists no files; expected one a line");
+        fl_fail(error, FL_ERROR_USAGE, "-: standard input lists no files; expected one a line");
     return listed;
 }
 
@@ -402,11 +391,8 @@ static bool make_preview(FlArgs *args, GError **error)
 {
     const FlSetting draft = {.name = "detail", .value = "draft"};
     g_array_prepend_val(args->settings, draft); // so that --detail wins
-    if (args->preview && args->render.frames) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "--preview and --frames contradict each other");
-        return false;
-    }
+    if (args->preview && args->render.frames)
+        return fl_fail(error, FL_ERROR_USAGE, "--preview and --frames contradict each other");
     if (args->preview)
         args->render.frames = args->preview;
     if (!args->render.layers)
@@ -445,11 +431,9 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
     args->render.n_settings = args->settings->len;
     if (!args->render.cache)
         args->render.cache = g_getenv("FLUIDY_CACHE") ? g_getenv("FLUIDY_CACHE") : "auto";
-    if (needs_input(args->task) && !args->render.inputs[0]) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "no input; expected SVG frames such as walk_%%04d.svg (see --help)");
-        return false;
-    }
+    if (needs_input(args->task) && !args->render.inputs[0])
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "no input; expected SVG frames such as walk_%%04d.svg (see --help)");
     return true;
 }
 

@@ -1,5 +1,6 @@
 #include "file_watch.h"
 
+#include "base/error.h"
 #include <gio/gio.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -159,9 +160,9 @@ bool fl_file_watch_works(GError **error)
     g_autoptr(GFile) any = g_file_new_for_path("/");
     g_autoptr(GFileMonitor) monitor = g_file_monitor_directory(any, 0, NULL, NULL);
     if (!monitor)
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                    "changed files cannot be noticed here: there is no inotify, or other programs "
-                    "use all of it (see fs.inotify.max_user_instances)");
+        fl_fail(error, FL_ERROR_NO_MEMORY,
+                "changed files cannot be noticed here: there is no inotify, or other programs "
+                "use all of it (see fs.inotify.max_user_instances)");
     return monitor;
 }
 

@@ -140,10 +140,8 @@ const char *fl_live_config_path(const FlLiveConfig *config)
 
 bool fl_live_config_save(FlLiveConfig *config, bool replace, GError **error)
 {
-    if (!replace && g_file_test(config->path, G_FILE_TEST_EXISTS)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s is there already", config->path);
-        return false;
-    }
+    if (!replace && g_file_test(config->path, G_FILE_TEST_EXISTS))
+        return fl_fail(error, FL_ERROR_EXISTS, "%s is there already", config->path);
     if (!g_file_set_contents(config->path, config->text, -1, error))
         return false;
     g_free(config->saved);
@@ -189,11 +187,9 @@ static bool read_base(FlLiveConfig *config, GError **error)
     const char *path = config->args->render.config;
     g_autofree char *text = NULL;
     g_auto(GStrv) paths = fl_options_configs(path);
-    if (g_strv_length(paths) > 1) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "--serve: expected one config, which may include others");
-        return false;
-    }
+    if (g_strv_length(paths) > 1)
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "--serve: expected one config, which may include others");
     if (given_config(config) && !g_file_get_contents(path, &text, NULL, error))
         return false;
     if (text && g_strcmp0(text, config->saved) == 0)
@@ -326,11 +322,9 @@ bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char
                            const char *value, GError **error)
 {
     const FlOption *option = is_section(section) ? option_of(section, key) : NULL;
-    if (!option || is_output(option) || !is_plain(value) || strlen(value) > LONGEST_VALUE) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "[%s] %s: cannot be set here, or the value is not valid text", section, key);
-        return false;
-    }
+    if (!option || is_output(option) || !is_plain(value) || strlen(value) > LONGEST_VALUE)
+        return fl_fail(error, FL_ERROR_USAGE,
+                       "[%s] %s: cannot be set here, or the value is not valid text", section, key);
     if (!check_value(option, value, error))
         return false;
     const char *const choice[] = {section, key, value, NULL};

@@ -170,7 +170,7 @@ static bool make_frames(FlLiveFilm *film, char **input, GError **error)
     if (!ended)
         g_subprocess_send_signal(process, SIGTERM);
     else if (!g_subprocess_get_successful(process))
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", g_strstrip(said));
+        fl_fail(error, FL_ERROR_INPUT, "%s", g_strstrip(said));
     else {
         g_free(*input);
         *input = g_steal_pointer(&folder);
@@ -320,10 +320,8 @@ static bool make_picture(FlLiveFilm *film, FlLiveWork kind, GError **error)
 static bool do_job(FlLiveFilm *film, GError **error)
 {
     const FlLiveWork work = film->job->work;
-    if (was_stopped(film)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "the settings have changed");
-        return false;
-    }
+    if (was_stopped(film))
+        return fl_fail(error, FL_ERROR_INTERRUPTED, "the settings have changed");
     return follow(film, error) &&
            (work == FL_LIVE_DRAFT    ? make_draft(film, error)
             : work == FL_LIVE_SAMPLE ? make_sample(film, error)

@@ -6,6 +6,7 @@
 #include "serve.h"
 #include "words.h"
 
+#include "base/error.h"
 #include "base/json.h"
 #include "config.h"
 
@@ -126,9 +127,8 @@ static bool wants_json(const FlArgs *args, bool *json, GError **error)
     *json = format && strcmp(format, "json") == 0;
     if (!format || *json)
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "--format %s: lists are written as tables or as json", format);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE, "--format %s: lists are written as tables or as json",
+                   format);
 }
 
 static void append_line(GString *text, const FlStyleEntry *style)
@@ -259,11 +259,9 @@ static bool can_reread_config(const FlArgs *args, const char *option, GError **e
 {
     g_auto(GStrv) paths = fl_options_configs(args->render.config);
     for (char **path = paths; *path; path++)
-        if (g_file_test(*path, G_FILE_TEST_EXISTS) && !g_file_test(*path, G_FILE_TEST_IS_REGULAR)) {
-            g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                        "%s: %s: expected a file, which can be read again", option, *path);
-            return false;
-        }
+        if (g_file_test(*path, G_FILE_TEST_EXISTS) && !g_file_test(*path, G_FILE_TEST_IS_REGULAR))
+            return fl_fail(error, FL_ERROR_USAGE,
+                           "%s: %s: expected a file, which can be read again", option, *path);
     return true;
 }
 
@@ -302,8 +300,7 @@ static int serve(FlArgs *args, GError **error)
     return can_reread_config(args, "--serve", error) && fl_serve(args, &stop, error) ? DONE
                                                                                      : FAILURE;
 #else
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "--serve: this build has no live page; it needs libsoup 3");
+    fl_fail(error, FL_ERROR_USAGE, "--serve: this build has no live page; it needs libsoup 3");
     return FAILURE;
 #endif
 }

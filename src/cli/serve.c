@@ -271,9 +271,9 @@ static void take_save(Live *live, SoupWebsocketConnection *page, char **part)
 {
     g_autoptr(GError) error = NULL;
     if (live->drop)
-        g_set_error(&error, FL_ERROR, FL_ERROR_USAGE,
-                    "the drawing was dropped here, so its folder is not known: download the "
-                    "config");
+        fl_fail(&error, FL_ERROR_USAGE,
+                "the drawing was dropped here, so its folder is not known: download the "
+                "config");
     else if (fl_live_config_save(live->config, *part[1] == '1', &error))
         watch_anew(live); // so the saved file does not count as changed
     const bool exists = g_error_matches(error, FL_ERROR, FL_ERROR_EXISTS);
@@ -442,13 +442,11 @@ static bool check_options(const FlArgs *args, GError **error)
                                          "dump",   "ebsynth", "merge",  "format", "no-frames",
                                          "resume", "dry-run", "watch",  NULL};
     for (const char *const *name = others; *name; name++)
-        if (fl_option_is_set(fl_option_find(FL_SCOPE_RENDER, *name), &args->render)) {
-            g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                        "--serve and --%s contradict each other; the page shows the film and "
-                        "writes no frames",
-                        *name);
-            return false;
-        }
+        if (fl_option_is_set(fl_option_find(FL_SCOPE_RENDER, *name), &args->render))
+            return fl_fail(error, FL_ERROR_USAGE,
+                           "--serve and --%s contradict each other; the page shows the film and "
+                           "writes no frames",
+                           *name);
     return true;
 }
 
@@ -456,11 +454,9 @@ static bool check_options(const FlArgs *args, GError **error)
 static char *new_secret(GError **error)
 {
     guint8 bytes[SECRET_BYTES];
-    if (getentropy(bytes, sizeof bytes) != 0) {
-        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "--serve: there are no random numbers: %s",
-                    g_strerror(errno));
-        return NULL;
-    }
+    if (getentropy(bytes, sizeof bytes) != 0)
+        return fl_none(error, FL_ERROR_OUTPUT, "--serve: there are no random numbers: %s",
+                       g_strerror(errno));
     g_autofree char *digest = g_compute_checksum_for_data(G_CHECKSUM_SHA256, bytes, sizeof bytes);
     return g_strdup_printf("/%.*s/", 2 * SECRET_BYTES, digest);
 }
@@ -501,9 +497,9 @@ static int listen_here(Live *live, GError **error)
                                       G_SOCKET_TYPE_STREAM, G_SOCKET_PROTOCOL_TCP, NULL, &bound,
                                       &problem))
         return g_inet_socket_address_get_port(G_INET_SOCKET_ADDRESS(bound));
-    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT,
-                "--serve: port %d of 127.0.0.1: %s; choose another one, or none for any",
-                live->args->port, problem->message);
+    fl_fail(error, FL_ERROR_OUTPUT,
+            "--serve: port %d of 127.0.0.1: %s; choose another one, or none for any",
+            live->args->port, problem->message);
     return 0;
 }
 
@@ -540,9 +536,9 @@ static bool open_window(Live *live, GError **error)
     g_autofree char *address = g_strconcat("http://", live->hosts[0], live->root, NULL);
     live->window = g_subprocess_new(G_SUBPROCESS_FLAGS_NONE, NULL, program, address, NULL);
     if (!live->window)
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "--window: %s cannot be run; this build has no window, which needs WebKitGTK",
-                    program);
+        fl_fail(error, FL_ERROR_USAGE,
+                "--window: %s cannot be run; this build has no window, which needs WebKitGTK",
+                program);
     else
         g_subprocess_wait_async(live->window, NULL, on_window_closed, live);
     return live->window;

@@ -169,20 +169,16 @@ static bool is_number(const FlOption *option)
 
 bool fl_option_reject(const FlOption *option, const char *value, GError **error)
 {
-    if (is_number(option)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "“%s” is not %s from %.16g to %.16g%s%s",
-                    value,
-                    is_real(option)                  ? "a number"
-                    : option->type == FL_OPTION_LIST ? "1 to 8 integers, each"
-                                                     : "an integer",
-                    option->min, option->max, *option->unit ? " " : "", option->unit);
-        return false;
-    }
+    if (is_number(option))
+        return fl_fail(error, FL_ERROR_USAGE, "“%s” is not %s from %.16g to %.16g%s%s", value,
+                       is_real(option)                  ? "a number"
+                       : option->type == FL_OPTION_LIST ? "1 to 8 integers, each"
+                                                        : "an integer",
+                       option->min, option->max, *option->unit ? " " : "", option->unit);
     g_auto(GStrv) words = g_strsplit(option->value, "|", -1);
     g_autofree char *list = alternatives(option);
     g_autofree char *hint = fl_did_you_mean(value, (const char *const *)words);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "“%s” is not %s%s", value, list, hint);
-    return false;
+    return fl_fail(error, FL_ERROR_USAGE, "“%s” is not %s%s", value, list, hint);
 }
 
 /* ---- values ---------------------------------------------------------------------------------- */
@@ -268,13 +264,12 @@ bool fl_options_take(const FlRenderOptions *given, FlRenderOptions *known, GErro
            known->settings[i].value)
         i++;
     if (given->size < FIRST_SIZE)
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "‘size’ is too small; expected sizeof(FlRenderOptions)");
+        fl_fail(error, FL_ERROR_USAGE, "‘size’ is too small; expected sizeof(FlRenderOptions)");
     else if (i < known->n_settings)
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "‘settings’[%zu]: expected a region or NULL, a name such as “style” and a "
-                    "value, in this order",
-                    i);
+        fl_fail(error, FL_ERROR_USAGE,
+                "‘settings’[%zu]: expected a region or NULL, a name such as “style” and a "
+                "value, in this order",
+                i);
     return given->size >= FIRST_SIZE && i == known->n_settings;
 }
 
@@ -311,10 +306,8 @@ static bool set_ground(const FlOption *option, const char *value, const char *fo
     const bool colour = *option->value == '#';
     const bool word = (colour && fl_text_colour(value, rgb)) ||
                       g_strv_contains((const char *const *)words, value);
-    if (colour && *value == '#' && !word) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "“%s” is not a colour #RRGGBB", value);
-        return false;
-    }
+    if (colour && *value == '#' && !word)
+        return fl_fail(error, FL_ERROR_USAGE, "“%s” is not a colour #RRGGBB", value);
     set_text(field, word ? g_strdup(value) : fl_text_path(value, folder), strings);
     return true;
 }
@@ -332,10 +325,8 @@ bool fl_option_set(const FlOption *option, const char *value, const char *folder
                    FlRenderOptions *options, GPtrArray *strings, GError **error)
 {
     void *const field = fl_option_field(option, options);
-    if (!*value) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "the value is missing");
-        return false;
-    }
+    if (!*value)
+        return fl_fail(error, FL_ERROR_USAGE, "the value is missing");
     switch (option->type) {
     case FL_OPTION_TEXT:
         set_text(field, g_strdup(value), strings);

@@ -132,14 +132,12 @@ static bool copy_finished_frames(FlFrameWriter *writer, GError **error)
             return false;
         const FlSinkFrame out = {.number = number, .rgba = picture->rgba};
         if (picture->width != writer->movie->params.width ||
-            picture->height != writer->movie->params.height) {
-            g_set_error(
-                error, FL_ERROR, FL_ERROR_CHANGED,
+            picture->height != writer->movie->params.height)
+            return fl_fail(
+                error, FL_ERROR_CHANGED,
                 "%s: %dx%d pixels, but an earlier run painted %dx%d; use ‘overwrite’ to start anew",
                 file, picture->width, picture->height, writer->movie->params.width,
                 writer->movie->params.height);
-            return false;
-        }
         if (!fl_sink_frame(writer->movie, &out, error))
             return false;
     }

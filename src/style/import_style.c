@@ -92,15 +92,13 @@ static bool store_masks(Import *import, FlRecording *masks, const FlRecording *s
         return false;
     const FlPicture *picture = g_ptr_array_index(pictures, 0);
     if ((int)pictures->len != style->n_frames || picture->width != style->width ||
-        picture->height != style->height) {
-        g_set_error(
-            error, FL_ERROR, FL_ERROR_INPUT,
+        picture->height != style->height)
+        return fl_fail(
+            error, FL_ERROR_INPUT,
             "%s: %u masks of %dx%d from number %d: expected %d of %dx%d as the frames, from "
             "%d",
             masks->path, pictures->len, picture->width, picture->height, masks->number,
             style->n_frames, style->width, style->height, source->number);
-        return false;
-    }
     for (int frame = 0; frame < style->n_frames; frame++)
         fl_style_store_mask(style, frame, g_ptr_array_index(pictures, frame));
     return true;
