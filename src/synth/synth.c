@@ -221,7 +221,6 @@ static bool prepare(FlSynth *synth, FlGuides *guides, FlRect rect, FlCarried *ca
     stats->seconds_target = fl_lap(&time);
     if (continues && !fl_synth_make_temporal(synth, carried, error))
         return false;
-    fl_target_drop_distances(&synth->target);
     stats->seconds_temporal += fl_lap(&time);
     return true;
 }
@@ -311,7 +310,6 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
     }
     const bool disposable = guides->disposable;
     guides->disposable &= !shows;
-    synth->wants_view = shows;
     const bool done = paint_rect(synth, guides, working_rect(synth, box), rgb, stats, error);
     guides->disposable = disposable;
     return done;

@@ -19,7 +19,6 @@ struct FlSynth {
     int boil;          // fl_boil_step() before the frame in hand
     bool moves;        // the drawing's motion is known in the frame in hand
     bool wants_energies;
-    bool wants_view;                     // of the frame in hand
     double seconds_search, seconds_vote; // of the frame in hand
     uint8_t *tone;   // of the frame in hand, of its rect: fl_drying_step(); NULL: it is 1
     FlTarget target; // of the frame in hand; kept until the next for FlSynthView

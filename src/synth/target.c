@@ -296,12 +296,6 @@ void fl_target_clear(FlTarget *target)
     *target = (FlTarget){0};
 }
 
-void fl_target_drop_distances(FlTarget *target)
-{
-    for (int l = 0; l < target->n_levels; l++)
-        g_clear_pointer(&target->level[l].distance, free);
-}
-
 /* Pixels without T_temp do not count in the colour; they do in the weight. */
 static void halve_temporal(const FlTargetLevel *fine, FlTargetLevel *coarse, int x, int y)
 {

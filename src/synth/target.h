@@ -74,9 +74,6 @@ bool fl_target_take_wetness(FlTarget *target, const uint8_t *wet, int width, GEr
  * colours are made. FL_ERROR_NO_MEMORY. */
 bool fl_target_level_search(FlTargetLevel *level, bool all, GError **error);
 
-/** Frees the distances, which only T_temp needs. */
-void fl_target_drop_distances(FlTarget *target);
-
 /** Makes room for T_temp and m in all levels, 0 all over. FL_ERROR_NO_MEMORY. */
 bool fl_target_add_temporal(FlTarget *target, GError **error);
 
