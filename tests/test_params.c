@@ -101,6 +101,9 @@ static void a_mistyped_word_finds_its_neighbour(void)
     g_assert_cmpstr(fl_suggest("styel", words), ==, "style");
     g_assert_cmpstr(fl_suggest("STROKES", words), ==, "stroke");
     g_assert_null(fl_suggest("background", words));
+    static const char *const options[] = {"lead", "wash", NULL}, *const regions[] = {"road", NULL};
+    g_assert_cmpstr(fl_suggest("load", options), ==, "wash"); // its newer word
+    g_assert_cmpstr(fl_suggest("load", regions), ==, "road"); // another list has none
     g_assert_cmpint(fl_edit_distance("kitten", "sitting"), ==, 3);
     g_assert_cmpint(fl_edit_distance("ab", "ba"), ==, 1);
     g_assert_cmpint(fl_edit_distance("", "abc"), ==, 3);

@@ -45,24 +45,23 @@ bool fl_resembles(const char *word, const char *known)
     return fl_edit_distance(word, known) <= most_typos(known);
 }
 
-/* The word that took the place of one of an earlier release; other words stay. */
-static const char *newer(const char *word)
+/* Says if a known word took the place of one of an earlier release. */
+static bool replaces(const char *known, const char *word)
 {
     static const char *const renamed[][2] = {
         {"load", "wash"}, {"pigments", "hue"}, {"fluid", "lazyfluids-steady"}};
     for (size_t i = 0; i < G_N_ELEMENTS(renamed); i++)
-        if (fl_edit_distance(word, renamed[i][0]) == 0)
-            return renamed[i][1];
-    return word;
+        if (strcmp(known, renamed[i][1]) == 0 && fl_edit_distance(word, renamed[i][0]) == 0)
+            return true;
+    return false;
 }
 
 const char *fl_suggest(const char *word, const char *const *words)
 {
     const char *nearest = NULL;
-    word = newer(word);
     int least = INT_MAX;
     for (; *words; words++) {
-        const int distance = fl_edit_distance(word, *words);
+        const int distance = replaces(*words, word) ? 0 : fl_edit_distance(word, *words);
         if (distance < least && distance <= most_typos(*words))
             least = distance, nearest = *words;
     }

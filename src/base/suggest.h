@@ -16,8 +16,8 @@ int fl_edit_distance(const char *a, const char *b);
 bool fl_resembles(const char *word, const char *known);
 
 /**
- * The word of the NULL-terminated list `words` that is nearest to `word`, the first of equals, or
- * that replaced it in this release.
+ * The word of the NULL-terminated list `words` that replaced `word` in this release, or is nearest
+ * to it, the first of equals.
  *
  * Returns: an element of `words`; NULL if no word is similar.
  */
