@@ -668,10 +668,10 @@ static void a_front_parts_two_tones(void)
 }
 
 /* Of a front, the flooded side is crisp where the brush was dry and soft where it was wet, and
- * paint lies for long beyond the line. */
+ * paint lies for long beyond the line; far from it nothing ends in a line of its own. */
 static void a_front_is_soft_in_wet_paint(void)
 {
-    double before[2] = {0}, beyond[2] = {0}, line[2] = {0};
+    double before[2] = {0}, beyond[2] = {0}, line[2] = {0}, wet[ROW] = {0};
     for (int dry = 0; dry < 2; dry++)
         for (int along = 0; along < 200; along++) {
             Row row = {0};
@@ -684,11 +684,16 @@ static void a_front_is_soft_in_wet_paint(void)
             before[dry] += (double)row.tones[ROW / 2 - 5];
             line[dry] += (double)row.tones[ROW / 2 + 2],
                 beyond[dry] += (double)row.tones[ROW / 2 + 20];
+            for (int i = 0; i < ROW && !dry; i++)
+                wet[i] += (double)row.tones[i] / 200;
         }
     g_test_message("5 px before the line %.3f and %.3f, on it %.3f, 20 px beyond %.3f",
                    before[0] / 200, before[1] / 200, line[0] / 200, beyond[0] / 200);
     g_assert_cmpfloat(before[0], >, 2 * before[1]);
     g_assert_cmpfloat(beyond[0], >, .15 * line[0]);
+    for (int i = 1; i < ROW; i++)
+        if (i < ROW / 2 - 10 || i > ROW / 2 + 50)
+            g_assert_cmpfloat(fabs(wet[i] - wet[i - 1]), <, .012);
 }
 
 /* Along a front, teeth of uneven length run on the way of the water, and none back. */

@@ -122,9 +122,7 @@ static inline float front_at(const Brush *brush, const Fields *slow, int i, floa
     const float tongue = 4 + 15 * (1.6f + ragged) * MAX(fine + .45f, 0), beyond = MAX(past, 0);
     const float line = .55f * fl_smooth(1 - past / tongue) + .4f * fl_decay(beyond * .05f);
     const float sharp = .3f + .5f * fl_smooth(.5f + slow->plane[FL_WASH_DRY][i]);
-    const float front = past < 0 ? fl_decay(MAX(-past, 0) * sharp) : line;
-    const bool far = (away < -12) | (away > 60);
-    return far ? 0 : strength * front;
+    return strength * (past < 0 ? fl_decay(MAX(-past, 0) * sharp) : line);
 }
 
 /* From -.5 on the side that water flooded to .5 beyond its front. */
