@@ -202,7 +202,7 @@ enum { SQUARE = 40 };
 
 /** The knockout of a square of thin paint, a row of which is full and a pixel of which is bare, at
  * the frame's left side. */
-static void knock_out(FlMedium medium, uint8_t knockout[SQUARE * SQUARE])
+static void knock_out(FlMedium medium, float white, uint8_t knockout[SQUARE * SQUARE])
 {
     enum { FRAME = 100, RADIUS = 16 };
     const FlRect box = {0, 30, SQUARE, SQUARE};
@@ -213,7 +213,7 @@ static void knock_out(FlMedium medium, uint8_t knockout[SQUARE * SQUARE])
         amounts[p] = p / SQUARE == 18 ? FL_AMOUNT_ONE : FL_AMOUNT_ONE * 4 / 10;
     amounts[20 * SQUARE + 1] = 0;
     g_assert_true(fl_knockout(amounts, coverage, coverage, box, FRAME, FRAME, RADIUS, medium, 255,
-                              knockout, NULL));
+                              white, knockout, NULL));
     g_assert_cmpint(knockout[18 * SQUARE + SQUARE - 1], ==, 255); // full paint
 }
 
@@ -221,18 +221,21 @@ static void thin_paint_hides_what_is_below_amid_its_shape_not_in_its_rim(void)
 {
     static uint8_t knockout[SQUARE * SQUARE];
     const uint8_t *row = knockout + 20 * SQUARE;
-    knock_out(FL_MEDIUM_TRANSPARENT, knockout);
+    knock_out(FL_MEDIUM_TRANSPARENT, 0, knockout);
     g_assert_cmpint(row[0], ==, 255);
     g_assert_cmpint(row[1], ==, 0);            // a hole shows it
     g_assert_cmpint(row[SQUARE - 1], ==, 127); // half, rounded down
     for (int x = 3; x < SQUARE; x++)
         g_assert_true(row[x] <= row[x - 1] && row[x] >= row[x - 1] - 48); // bit by bit
-    knock_out(FL_MEDIUM_BODY, knockout);
+    knock_out(FL_MEDIUM_BODY, 0, knockout);
     g_assert_cmpint(row[1], ==, 255); // cut out of its paper
     g_assert_cmpint(row[SQUARE - 1], ==, 127);
-    knock_out(FL_MEDIUM_OPAQUE, knockout);
+    knock_out(FL_MEDIUM_OPAQUE, 0, knockout);
     g_assert_cmpint(row[0], ==, row[SQUARE - 1]);
     g_assert_cmpint(row[0], <, 128);
+    knock_out(FL_MEDIUM_TRANSPARENT, 1, knockout);
+    g_assert_cmpint(row[1], ==, 0);
+    g_assert_cmpint(row[SQUARE - 1], ==, 255); // white has no light line around it
 }
 
 /** Stacks of random discs of random paint. */

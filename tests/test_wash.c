@@ -490,8 +490,8 @@ static void beside_a_wash_all_is_as_at_its_rim(void)
     }
 }
 
-/* White is bare paper where it was painted, and nothing between the bristles of its rim: there it
- * would be an even border, and its shadow a blue one. */
+/* White is bare paper where it was painted, and nothing between the bristles of its rim, where it
+ * would be an even border; thin paint there is no thicker on the dark side. */
 static void white_ends_where_its_paint_ends(void)
 {
     enum { STEP = 5 };
@@ -511,10 +511,8 @@ static void white_ends_where_its_paint_ends(void)
     const FlArea area = {{0, 0, 3, 1}, &row};
     fl_wash_lay(&wash, 1, &area, amounts, play);
     g_assert_cmpint(amounts[0], ==, 0);
-    g_assert_cmpint(amounts[1], <, 200);
+    g_assert_cmpint(amounts[1], ==, 100);
     g_assert_cmpint(amounts[2], >, 900);
-    g_assert_cmpint(play[0], ==, 0);
-    g_assert_cmpint(play[1], ==, 0);
     g_assert_cmpint(play[2], >, 20);
 }
 

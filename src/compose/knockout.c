@@ -18,15 +18,18 @@ typedef struct Ramps {
 
 /*
  * Rims of a fifth hide nothing: where the shape lies over other paint they would be an even light
- * line around it, thin paint on white paper. Amid a shape thin washes lie on paper, around which
- * the paint below went: else they would be mottled with it. A hole in them shows what lies below.
- * Thin places of an opaque medium let it through everywhere, the more the darker they are: paper
- * shows least in light paint. What is painted as if cut out of its paper has that below it.
+ * line around it, thin paint on white paper. Those of white hide all, since it has no such line,
+ * and its shadow on the paint below would be a dark one. Amid a shape thin washes lie on paper,
+ * around which the paint below went: else they would be mottled with it. A hole in them shows what
+ * lies below. Thin places of an opaque medium let it through everywhere, the more the darker they
+ * are: paper shows least in light paint. What is painted as if cut out of its paper has that below
+ * it.
  */
-static Ramps ramps_of(FlMedium medium, int darkness)
+static Ramps ramps_of(FlMedium medium, int darkness, float white)
 {
     const int none = PART(6) * darkness / 255;
-    const Ramp rim = {PART(2), PART(6)}, opaque = {none, none + PART(3)};
+    const Ramp rim = {(int)(PART(2) * (1 - white)), (int)(PART(6) - PART(4) * white)};
+    const Ramp opaque = {none, none + PART(3)};
     if (medium == FL_MEDIUM_OPAQUE)
         return (Ramps){opaque, opaque};
     return (Ramps){rim, medium == FL_MEDIUM_BODY ? (Ramp){-1, 0} : (Ramp){0, PART(3)}};
@@ -160,10 +163,10 @@ static void hide_tile(const Tile *tile, const Windows *w, const int16_t *amounts
 }
 
 bool fl_knockout(const int16_t *amounts, const uint8_t *coverage, const uint8_t *shown, FlRect box,
-                 int width, int height, int radius_px, FlMedium medium, int darkness,
+                 int width, int height, int radius_px, FlMedium medium, int darkness, float white,
                  uint8_t *knockout, GError **error)
 {
-    const Windows windows = {box, width, height, radius_px, ramps_of(medium, darkness)};
+    const Windows windows = {box, width, height, radius_px, ramps_of(medium, darkness, white)};
     g_auto(Tile) tile = {0};
     if (!tile_init(&tile, radius_px, error))
         return false;

@@ -257,7 +257,9 @@ static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
     const int border_px = (int)(painted->style->border_px + 0.5f);
     if (!fl_knockout(amounts, draw->coverage, layer->coverage, box, fl_drawing_width(drawing),
                      fl_drawing_height(drawing), MAX(border_px, 1), medium_of(painted),
-                     darkness_of(&colouring), knockout, error))
+                     darkness_of(&colouring),
+                     whiteness_of(&colouring, fl_wash_of_draw(sources->washes, r)), knockout,
+                     error))
         return false;
     const FlGaps gaps = {.strength = (float)painted->settings->gaps,
                          .key = fl_key(sources->input->seed, g_str_hash(painted->name)),

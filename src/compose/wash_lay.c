@@ -200,23 +200,17 @@ void fl_wash_find_tones(const FlWash *wash, float *tones, float *hues)
     find_tones(&brush, &fields, tones, hues);
 }
 
-/* 0 where the recording has hardly any paint, as between the bristles of a rim, 1 amid its paint.
- */
-static inline float inside_of(int32_t recorded)
-{
-    return fl_clamp(2.5f / FL_AMOUNT_ONE * (float)recorded - .5f, 0, 1);
-}
-
 /* calm: 1 for the amount that is the fill, 0 for that of the recording, whose edges stay; white
- * is bare paper inside them. */
+ * is bare paper inside them, and at them as thin as it was recorded. */
 static inline int32_t amount_of(const Brush *brush, int32_t recorded, float calm, float tone)
 {
-    const float inside = inside_of(recorded);
+    const float inside = fl_clamp(2.5f / FL_AMOUNT_ONE * (float)recorded - .5f, 0, 1);
     const float amount = (float)recorded + calm * inside * (float)(FL_AMOUNT_ONE - recorded);
     const int i = (int)((fl_clamp(tone, TONE_LEAST, 1.37f) - TONE_LEAST) * TONE_ONE);
     const int32_t laid = ((int32_t)amount * brush->factor[i] + 64 * 255 / 2) / (64 * 255);
     const float bare = .9f * FL_AMOUNT_ONE + .1f * amount;
-    const float mixed = (float)laid + brush->white * inside * (bare - (float)laid);
+    const float white = (float)recorded + inside * (bare - (float)recorded);
+    const float mixed = (float)laid + brush->white * (white - (float)laid);
     return MIN((int32_t)mixed, FL_AMOUNTS - 1);
 }
 
@@ -265,8 +259,7 @@ static inline void lay_in_run(const Brush *brush, int y, Run *restrict run)
     for (int i = 0; i < fields.n; i++) {
         // lines look like dirt in white
         const float shadow = fl_smooth((3.5f * wet * run->slow[FL_WASH_TONE][i] + .15f) / 1.5f);
-        const float white_hue = inside_of(run->amounts[i]) * shadow;
-        const float hue = run->hues[i] + brush->white * (white_hue - run->hues[i]);
+        const float hue = run->hues[i] + brush->white * (shadow - run->hues[i]);
         run->plays[i] = (int32_t)(fl_clamp(hue, -1.95f, 1.95f) * FL_PLAY_ONE);
         run->amounts[i] =
             amount_of(brush, run->amounts[i], run->slow[FL_WASH_CALM][i], wet * run->tones[i]);
