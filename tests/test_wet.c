@@ -756,7 +756,7 @@ static void test_limb(void)
 
 /* The red of the page that a blue coat has just left, below a hand that lay over its edge, if any,
  * and swings away. */
-static double red_below_hand(bool hand, const char *stain)
+static double red_below_hand(bool hand, const char *stain, const char *painted)
 {
     g_auto(GStrv) frames = g_new0(char *, 9);
     for (int f = 1; f <= 8; f++)
@@ -764,7 +764,7 @@ static double red_below_hand(bool hand, const char *stain)
             g_strdup_printf("<path d='M%d 15h40v70h-40z' fill='#23a'/>"
                             "<path d='M%d 20h6v60h-6z' fill='#2a3' display='%s'/>",
                             17 + 3 * f, 13 + 3 * f + 2 * MAX(f - 5, 0), hand ? "inline" : "none");
-    FlPicture *picture = last_of(frames, 288, stain, NULL);
+    FlPicture *picture = last_of(frames, 288, stain, painted);
     double sum = 0;
     for (int y = 90; y < 210; y++)
         for (int x = 102; x < 120; x++)
@@ -776,12 +776,22 @@ static double red_below_hand(bool hand, const char *stain)
 /* What leaves in the same moment below a quick shape is not taken up by that. */
 static void test_hand(void)
 {
-    const double bare = red_below_hand(false, "0"), stain = red_below_hand(false, "1"),
-                 hand = red_below_hand(true, "1");
+    const double bare = red_below_hand(false, "0", NULL), stain = red_below_hand(false, "1", NULL),
+                 hand = red_below_hand(true, "1", NULL);
     g_test_message("red of bare paper %.2f, of a stain %.2f, of one below a hand %.2f", bare, stain,
                    hand);
     g_assert_cmpfloat(stain, <, bare - 4);
     g_assert_cmpfloat(hand, <, stain + 0.3 * (bare - stain));
+}
+
+/* A stain from before a film's first painted frame is as strong as if all had been painted. */
+static void test_late(void)
+{
+    const double bare = red_below_hand(false, "0", NULL), stain = red_below_hand(false, "1", NULL),
+                 late = red_below_hand(false, "1", "8");
+    g_test_message("red of bare paper %.2f, of a stain %.2f, of one from before %.2f", bare, stain,
+                   late);
+    g_assert_cmpfloat(fabs(late - stain), <, 0.05 * (bare - stain));
 }
 
 /* The most ink of the fronts of a disk of region 3 where paint of a region was seen, of any colour
@@ -1038,6 +1048,7 @@ int main(int argc, char **argv)
     g_test_add_func("/wet/paint-on-other-paint-marks-nothing", test_other_paint);
     g_test_add_func("/wet/a-limb-that-leaves-shows-no-hole-in-a-stain", test_limb);
     g_test_add_func("/wet/a-hand-that-swings-away-takes-up-no-stain", test_hand);
+    g_test_add_func("/wet/a-film-that-starts-late-has-its-stains", test_late);
     g_test_add_func("/wet/seen-paint-runs-ahead", test_seen_paint);
     g_test_add_func("/wet/what-grows-keeps-its-colour", test_grown);
     g_test_add_func("/wet/marks-fade-until-none-is-left", test_dries);
