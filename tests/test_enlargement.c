@@ -276,12 +276,12 @@ static void views_and_restarts_change_nothing(void)
     g_assert_cmpmem(restarted->rgb, sizeof restarted->rgb, plain->rgb, sizeof plain->rgb);
 }
 
-static void a_view_has_the_size_of_the_picture(void)
+static void a_view_has_the_size_of_the_guides(void)
 {
     g_autoptr(Film) film = painted(true, false);
     const FlSynthView *view = &film->view;
-    const int x = 212 - view->rect.x, y = SIDE - view->rect.y;
-    g_assert_cmpint(view->rect.width, >, LONG);
+    const int x = 106 - view->rect.x, y = SIDE / 2 - view->rect.y;
+    g_assert_cmpint(view->rect.width, <=, LONG);
     g_assert_cmpint(view->nnf->width, ==, view->rect.width);
     g_assert_cmpint(view->nnf->match[y * view->rect.width + x].frame, !=, FL_NO_MATCH);
     g_assert_cmpfloat(view->temporal_weight[y * view->rect.width + x], >, 0);
@@ -311,7 +311,7 @@ int main(int argc, char **argv)
     TEST(pictures_have_twice_the_size_and_paint_in_the_mask);
     TEST(a_part_at_rest_keeps_its_picture);
     TEST(views_and_restarts_change_nothing);
-    TEST(a_view_has_the_size_of_the_picture);
+    TEST(a_view_has_the_size_of_the_guides);
     TEST(any_number_of_threads_paints_the_same);
     return g_test_run();
 }

@@ -1,5 +1,6 @@
 /* Guides of half the size, and back. */
 #include "cover/mask_store.h"
+#include "guides/guides.h"
 #include "guides/half_guides.h"
 
 static void a_coverage_is_the_mean_of_four(void)
@@ -40,25 +41,24 @@ static void a_mask_may_be_halved_in_its_place(void)
     g_assert_cmpmem(mask, 7 * 4, half, 7 * 4);
 }
 
-static void doubled_guides_have_lengths_of_the_large_frame(void)
+static void a_doubled_flow_has_lengths_of_the_large_frame(void)
 {
-    g_auto(FlGuides) half = {0}, full = {0};
-    g_assert_true(fl_guides_init(&half, 2, 1, NULL));
-    half.has_motion = true;
-    half.mask[1] = 200, half.angle[1] = 64;
-    half.distance[1] = 1.5f, half.ext_plus[1] = 3;
-    half.flow[2] = 2, half.flow[3] = -1;
-    half.motion[0] = half.motion[1] = FL_MOTION_UNKNOWN;
-    half.motion[2] = FL_MOTION_ONE, half.motion[3] = 0;
-    g_assert_true(fl_guides_double(&half, 3, 2, &full, NULL));
-    g_assert_cmpint(full.width, ==, 3);
-    g_assert_true(full.mask[1] == half.mask[0] && full.mask[5] == 200 && full.angle[2] == 64);
-    g_assert_cmpfloat(full.distance[5], ==, 3);
-    g_assert_cmpfloat(full.ext_plus[2], ==, 6);
-    g_assert_cmpfloat(full.flow[2 * 5 + 1], ==, -2);
-    g_assert_true(full.has_motion);
-    g_assert_cmpint(full.motion[2 * 4], ==, FL_MOTION_UNKNOWN);
-    g_assert_cmpint(full.motion[2 * 5], ==, 2 * FL_MOTION_ONE);
+    const float half[] = {0, 0, 2, -1};
+    float full[2 * 3 * 2];
+    fl_flow_double(half, 3, 2, full);
+    g_assert_true(full[0] == 0 && full[2 * 4] == 0 && full[2 * 4 + 1] == 0);
+    g_assert_cmpfloat(full[2 * 2], ==, 4);
+    g_assert_cmpfloat(full[2 * 5 + 1], ==, -2);
+}
+
+static void a_plane_is_repeated_or_as_it_is(void)
+{
+    const uint8_t plane[] = {1, 2, 3, 4}, expected[] = {1, 1, 2, 1, 1, 2, 3, 3, 4};
+    uint8_t same[4], full[9];
+    fl_plane_repeat(plane, 2, 2, 1, 1, same);
+    fl_plane_repeat(plane, 3, 3, 1, 2, full);
+    g_assert_cmpmem(same, sizeof same, plane, sizeof plane);
+    g_assert_cmpmem(full, sizeof full, expected, sizeof expected);
 }
 
 #define TEST(name) g_test_add_func("/half-guides/" #name, name)
@@ -70,6 +70,7 @@ int main(int argc, char **argv)
     TEST(what_is_thin_stays_inside);
     TEST(an_odd_side_has_its_last_pixels);
     TEST(a_mask_may_be_halved_in_its_place);
-    TEST(doubled_guides_have_lengths_of_the_large_frame);
+    TEST(a_doubled_flow_has_lengths_of_the_large_frame);
+    TEST(a_plane_is_repeated_or_as_it_is);
     return g_test_run();
 }

@@ -71,7 +71,9 @@ static void paint_stripes(FlPaintedRegion *painted, FlGuides *guides, int shift,
 static void paint_that_moves_with_its_region_does_not_flicker(void)
 {
     uint8_t part[3 * WIDTH * HEIGHT];
-    FlPaintedRegion painted = {.painted = part};
+    FlExemplar exemplar = {0};
+    const FlStyleInstance style = {.exemplar = &exemplar};
+    FlPaintedRegion painted = {.painted = part, .style = &style, .rect = {0, 0, WIDTH, HEIGHT}};
     g_auto(FlGuides) guides = {0};
     g_assert_true(fl_guides_init(&guides, WIDTH, HEIGHT, NULL));
     FlFlicker flicker = {0};

@@ -3,17 +3,19 @@
 #include "base/alloc.h"
 #include "base/colour_map.h"
 #include "guides/flow_file.h"
+#include "guides/half_guides.h"
 #include "io/atomic_file.h"
 #include "io/png.h"
 #include <math.h>
 #include <string.h>
 
-/* A plane of n floats per pixel, in the size of painted->rect or of the frame. */
+/* A plane of n floats per pixel, of the guides or of the frame. */
 typedef struct Plane {
     const char *name;
     float *values;
     int n;
     float low, high; // drawn as black and white
+    bool lengths;    // px of the guides
 } Plane;
 
 /* The destination of a frame's dump. */
@@ -21,6 +23,7 @@ typedef struct Dump {
     const char *folder;
     const FlPaintedRegion *painted;
     int number;
+    int px; // of the frame per px of the guides
 } Dump;
 
 static char *file_of(const Dump *dump, const char *name, const char *suffix)
@@ -29,14 +32,26 @@ static char *file_of(const Dump *dump, const char *name, const char *suffix)
     return g_build_filename(dump->folder, dump->painted->name, leaf, NULL);
 }
 
-/* Extends a plane from painted->rect to the whole frame. */
-static float *extend_to_frame(const FlPaintedRegion *painted, const Plane *plane, GError **error)
+/* The rectangle of the guides, in px of them. */
+static FlRect guided(const Dump *dump)
 {
-    const size_t n = (size_t)plane->n, pixels = (size_t)painted->width * painted->height;
-    float *out = fl_alloc(n * pixels, sizeof(float), "a picture", error);
-    if (out)
-        fl_rect_copy(plane->values, painted->rect, out,
-                     (FlRect){0, 0, painted->width, painted->height}, n * sizeof(float));
+    return dump->px == 2 ? fl_rect_halved(dump->painted->rect) : dump->painted->rect;
+}
+
+/* Extends a plane of the guides to the whole frame. */
+static float *extend_to_frame(const Dump *dump, const Plane *plane, GError **error)
+{
+    const FlPaintedRegion *painted = dump->painted;
+    const FlRect rect = painted->rect, page = {0, 0, painted->width, painted->height};
+    const size_t n = (size_t)plane->n, values = n * fl_rect_pixels(page);
+    g_autofree float *part = fl_alloc(n * fl_rect_pixels(rect), sizeof *part, "a picture", error);
+    float *out = part ? fl_alloc(values, sizeof *out, "a picture", error) : NULL;
+    if (!out)
+        return NULL;
+    fl_plane_repeat(plane->values, rect.width, rect.height, n * sizeof *part, dump->px, part);
+    fl_rect_copy(part, rect, out, page, n * sizeof *out);
+    for (size_t k = 0; k < values && plane->lengths; k++)
+        out[k] *= (float)dump->px;
     return out;
 }
 
@@ -81,14 +96,14 @@ static bool write_picture(const Dump *dump, const Plane *plane, GError **error)
 static bool write_plane(const Dump *dump, const Plane *plane, GError **error)
 {
     Plane shown = *plane;
-    g_autofree float *values = shown.values = extend_to_frame(dump->painted, plane, error);
+    g_autofree float *values = shown.values = extend_to_frame(dump, plane, error);
     return values && write_raw(dump, &shown, error) && write_picture(dump, &shown, error);
 }
 
 static bool write_flo(const Dump *dump, const Plane *plane, GError **error)
 {
     g_autofree char *flo = file_of(dump, plane->name, ".flo");
-    g_autofree float *flow = extend_to_frame(dump->painted, plane, error);
+    g_autofree float *flow = extend_to_frame(dump, plane, error);
     return flow && fl_flow_save(flo, dump->painted->width, dump->painted->height, flow, error);
 }
 
@@ -108,14 +123,14 @@ static bool dump_guides(const Dump *dump, const FlGuides *guides, GError **error
         return false;
     for (size_t p = 0; p < pixels; p++)
         mask[p] = guides->mask[p] / 255.0f;
-    const float b = dump->painted->style->border_px;
+    const float b = dump->painted->style->border_px, px = (float)dump->px;
     const Plane planes[] = {
         {"mask", mask, 1, 0, 1},
-        {"distance", guides->distance, 1, -b, 2 * b},
-        {"depth", guides->depth, 1, -b, 2 * b},
-        {"flow", guides->flow, 2, 0, largest(guides->flow, 2 * pixels)},
-        {"ext-plus", guides->ext_plus, 1, 0, largest(guides->ext_plus, pixels)},
-        {"ext-minus", guides->ext_minus, 1, 0, largest(guides->ext_minus, pixels)},
+        {"distance", guides->distance, 1, -b, 2 * b, true},
+        {"depth", guides->depth, 1, -b, 2 * b, true},
+        {"flow", guides->flow, 2, 0, px * largest(guides->flow, 2 * pixels), true},
+        {"ext-plus", guides->ext_plus, 1, 0, px * largest(guides->ext_plus, pixels), true},
+        {"ext-minus", guides->ext_minus, 1, 0, px * largest(guides->ext_minus, pixels), true},
     };
     for (size_t k = 0; k < G_N_ELEMENTS(planes); k++)
         if (!write_plane(dump, &planes[k], error))
@@ -136,30 +151,46 @@ static bool dump_motion(const Dump *dump, const FlGuides *guides, GError **error
         motion[k] = guides->motion[k] == FL_MOTION_UNKNOWN
                         ? NAN
                         : (float)guides->motion[k] * (1.0f / FL_MOTION_ONE);
-    return write_flo(dump, &(Plane){"motion", motion, 2, 0, 0}, error);
+    return write_flo(dump, &(Plane){"motion", motion, 2, .lengths = true}, error);
+}
+
+/* The field in px of the frame; `doubled` has room for one of twice the size. */
+static const FlNnf *field_of(const Dump *dump, const FlNnf *nnf, FlNnf *doubled, GError **error)
+{
+    const FlEnlargement *enlargement = dump->painted->style->exemplar->enlargement;
+    g_auto(FlBlocks) all = {0};
+    if (!enlargement)
+        return nnf;
+    if (!fl_nnf_init(doubled, 2 * nnf->width, 2 * nnf->height, error))
+        return NULL;
+    fl_blocks_init_full(&all, doubled->width, doubled->height);
+    fl_nnf_upscale(nnf, fl_enlargement_level(enlargement), &all, doubled);
+    return doubled;
 }
 
 /* Writes the field in the frame's size and as a picture: x, y and frame as red, green, blue. */
 static bool dump_field(const Dump *dump, const FlSynthView *view, GError **error)
 {
     const int width = dump->painted->width, height = dump->painted->height;
-    const FlExemplar *exemplar = dump->painted->style->exemplar;
-    const FlExemplarLevel *full = &exemplar->level[0];
-    const float px = (float)fl_field_px(exemplar);
-    const FlRect part = dump->painted->rect;
+    const FlExemplarLevel *full = &dump->painted->style->exemplar->level[0];
+    const float px = (float)dump->px;
+    const FlRect part = dump->painted->rect, r = view->rect;
+    const FlRect box = {dump->px * r.x, dump->px * r.y, dump->px * r.width, dump->px * r.height};
+    const FlRect rect = fl_rect_and(box, (FlRect){0, 0, part.width, part.height});
     const size_t pixels = (size_t)width * height;
     g_autofree float *field = fl_alloc(4 * pixels, sizeof(float), "a picture", error);
     g_autofree float *shown =
         field ? fl_alloc(3 * pixels, sizeof(float), "a picture", error) : NULL;
-    if (!shown)
+    g_auto(FlNnf) doubled = {0};
+    const FlNnf *nnf = shown ? field_of(dump, view->nnf, &doubled, error) : NULL;
+    if (!nnf)
         return false;
     for (size_t k = 0; k < 4 * pixels; k++)
         field[k] = -1;
-    for (int y = 0; y < view->rect.height; y++)
-        for (int x = 0; x < view->rect.width; x++) {
-            const FlMatch m = view->nnf->match[(size_t)y * view->rect.width + x];
-            const size_t p =
-                (size_t)(part.y + view->rect.y + y) * width + part.x + view->rect.x + x;
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const FlMatch m = nnf->match[(size_t)y * nnf->width + x];
+            const size_t p = (size_t)(part.y + rect.y + y) * width + part.x + rect.x + x;
             if (m.frame == FL_NO_MATCH)
                 continue;
             field[4 * p] = m.frame;
@@ -175,7 +206,7 @@ static bool dump_field(const Dump *dump, const FlSynthView *view, GError **error
 
 static bool dump_temporal(const Dump *dump, const FlSynthView *view, GError **error)
 {
-    const FlRect part = dump->painted->rect;
+    const FlRect part = guided(dump);
     const size_t pixels = fl_rect_pixels(part);
     g_autofree float *weight = fl_alloc(pixels, sizeof(float), "a picture", error);
     g_autofree float *colour =
@@ -195,7 +226,7 @@ static bool dump_temporal(const Dump *dump, const FlSynthView *view, GError **er
 bool fl_dump_frame(const char *folder, const FlPaintedRegion *painted, const FlGuides *guides,
                    int number, GError **error)
 {
-    const Dump dump = {folder, painted, number};
+    const Dump dump = {folder, painted, number, fl_field_px(painted->style->exemplar)};
     if (!dump_guides(&dump, guides, error) || !dump_motion(&dump, guides, error))
         return false;
     if (painted->view.nnf && !dump_field(&dump, &painted->view, error))

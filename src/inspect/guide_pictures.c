@@ -39,7 +39,7 @@ void fl_guide_view_reset(FlGuideView *view)
     memset(view->owner, 0, sizeof(int16_t) * pixels);
 }
 
-/* The match of a pixel of painted->rect. */
+/* The match of a pixel of the guides. */
 static FlMatch match_at(const FlSynthView *view, int x, int y)
 {
     const int column = x - view->rect.x, row = y - view->rect.y;
@@ -59,32 +59,31 @@ static void put_match(const FlGuideView *view, const FlPaintedRegion *painted, s
                       FlMatch match)
 {
     const FlExemplarLevel *full = &painted->style->exemplar->level[0];
-    const int px = fl_field_px(painted->style->exemplar);
     uint8_t rgb[3];
     if (match.frame == FL_NO_MATCH)
         return;
     fl_colour_map((float)match.frame / (float)MAX(full->n_frames - 1, 1), rgb);
     put(view, FL_GUIDE_TIME, to, rgb);
-    const uint8_t place[3] = {(uint8_t)(255 * fl_match_x(match) / (px * full->width)),
-                              (uint8_t)(255 * fl_match_y(match) / (px * full->height)), 128};
+    const uint8_t place[3] = {(uint8_t)(255 * fl_match_x(match) / full->width),
+                              (uint8_t)(255 * fl_match_y(match) / full->height), 128};
     put(view, FL_GUIDE_PLACE, to, place);
 }
 
-/* Sets one pixel of the pictures from pixel x, y of painted->rect. */
+/* Sets one pixel of the pictures from pixel x, y of the guides. */
 static void put_pixel(FlGuideView *view, const FlPaintedRegion *painted, const FlGuides *guides,
                       int x, int y, size_t to)
 {
     const FlExemplar *exemplar = painted->style->exemplar;
-    const float ext_scale = exemplar->ext_scale / (float)fl_field_px(exemplar);
     const size_t from = (size_t)y * guides->width + x;
     const float u = guides->flow[2 * from], v = guides->flow[2 * from + 1];
-    const float scale = (float)view->picture[0]->width / (float)painted->width;
+    const int px = fl_field_px(exemplar);
+    const float scale = (float)(px * view->picture[0]->width) / (float)painted->width;
     uint8_t rgb[3];
-    fl_colour_map(guides->distance[from] / (3 * painted->style->border_px), rgb);
+    fl_colour_map(guides->distance[from] / (3 * exemplar->border_px), rgb);
     put(view, FL_GUIDE_DISTANCE, to, rgb);
-    fl_colour_map(guides->ext_plus[from] * ext_scale, rgb);
+    fl_colour_map(guides->ext_plus[from] * exemplar->ext_scale, rgb);
     put(view, FL_GUIDE_EXT_PLUS, to, rgb);
-    fl_colour_map(guides->ext_minus[from] * ext_scale, rgb);
+    fl_colour_map(guides->ext_minus[from] * exemplar->ext_scale, rgb);
     put(view, FL_GUIDE_EXT_MINUS, to, rgb);
     put_match(view, painted, to, match_at(&painted->view, x, y));
     view->flow[2 * to] = u * scale, view->flow[2 * to + 1] = v * scale;
@@ -94,16 +93,19 @@ void fl_guide_view_add(FlGuideView *view, int p, const FlPaintedRegion *painted,
                        const FlGuides *guides)
 {
     const int width = view->picture[0]->width, height = view->picture[0]->height;
+    const int px = fl_field_px(painted->style->exemplar);
+    const FlRect rect = painted->rect;
     for (int row = 0; row < height; row++)
         for (int column = 0; column < width; column++) {
             const size_t to = (size_t)row * width + column;
-            const int x = (2 * column + 1) * painted->width / (2 * width) - painted->rect.x;
-            const int y = (2 * row + 1) * painted->height / (2 * height) - painted->rect.y;
-            if (x < 0 || y < 0 || x >= guides->width || y >= guides->height ||
-                guides->mask[(size_t)y * guides->width + x] < FL_INSIDE || view->owner[to] > p + 1)
+            const int x = (2 * column + 1) * painted->width / (2 * width) - rect.x;
+            const int y = (2 * row + 1) * painted->height / (2 * height) - rect.y;
+            if (x < 0 || y < 0 || x >= rect.width || y >= rect.height ||
+                guides->mask[fl_guides_at(guides, x / px, y / px)] < FL_INSIDE ||
+                view->owner[to] > p + 1)
                 continue;
             view->owner[to] = (int16_t)(p + 1);
-            put_pixel(view, painted, guides, x, y, to);
+            put_pixel(view, painted, guides, x / px, y / px, to);
         }
 }
 

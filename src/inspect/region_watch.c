@@ -41,7 +41,9 @@ static double compare(const FlFlicker *before, const FlFlicker *now, int width, 
 bool fl_flicker_measure(FlFlicker *flicker, const FlPaintedRegion *painted, const FlGuides *guides,
                         GError **error)
 {
-    const size_t pixels = (size_t)guides->width * guides->height;
+    const FlRect rect = painted->rect;
+    const size_t pixels = fl_rect_pixels(rect);
+    const int px = fl_field_px(painted->style->exemplar);
     FlFlicker now = {.change = NAN};
     if (!(now.luma = fl_alloc(pixels, 1, "a picture", error)) ||
         !(now.mask = fl_alloc(pixels, 1, "a picture", error)) ||
@@ -49,13 +51,17 @@ bool fl_flicker_measure(FlFlicker *flicker, const FlPaintedRegion *painted, cons
         fl_flicker_clear(&now);
         return false;
     }
-    memcpy(now.mask, guides->mask, pixels);
-    for (size_t p = 0; p < pixels; p++)
+    for (size_t p = 0; p < pixels; p++) {
+        const int x = (int)p % rect.width / px, y = (int)p / rect.width / px;
+        const size_t from = fl_guides_at(guides, x, y);
         now.luma[p] = luma_of(painted->painted + 3 * p);
-    for (size_t k = 0; k < 2 * pixels; k++)
-        now.motion[k] = (int16_t)lrintf(CLAMP(guides->flow[k], -32000, 32000));
+        now.mask[p] = guides->mask[from];
+        for (size_t k = 0; k < 2; k++)
+            now.motion[2 * p + k] =
+                (int16_t)lrintf(CLAMP((float)px * guides->flow[2 * from + k], -32000, 32000));
+    }
     if (flicker->luma)
-        now.change = compare(flicker, &now, guides->width, guides->height);
+        now.change = compare(flicker, &now, rect.width, rect.height);
     fl_flicker_clear(flicker);
     *flicker = now;
     return true;
@@ -165,14 +171,13 @@ void fl_exemplar_use_add(FlExemplarUse *use, const FlPaintedRegion *painted)
 {
     const FlNnf *nnf = painted->view.nnf;
     const FlExemplarLevel *full = &use->style->exemplar->level[0];
-    const int px = fl_field_px(use->style->exemplar);
     if (!nnf)
         return;
     for (size_t p = 0; p < (size_t)nnf->width * nnf->height; p++) {
         const FlMatch m = nnf->match[p];
         if (m.frame == FL_NO_MATCH)
             continue;
-        use->place[(size_t)(fl_match_y(m) / px) * full->width + fl_match_x(m) / px]++;
+        use->place[(size_t)fl_match_y(m) * full->width + fl_match_x(m)]++;
         use->frame[m.frame]++;
         use->total++;
     }

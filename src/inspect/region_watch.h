@@ -34,7 +34,7 @@ double fl_flicker_of_exemplar(const FlExemplar *exemplar);
 typedef struct FlFollowedPoint {
     bool here;  // the region is in the frame, else the other fields are undefined
     bool found; // placed anew since the caller last cleared this flag: no motion led here
-    float x, y; // px of the frame
+    float x, y; // px of the guides, in the frame
     float turn; // of the drawing around it since it was found, turns, clockwise
 } FlFollowedPoint;
 

@@ -144,7 +144,9 @@ bool fl_report_guides(FlReport *report, int p, const FlPaintedRegion *painted, i
         report->painter[p].flicker.change = 0;
         return true;
     }
-    fl_followed_point_move(&report->painter[p].point, painted->rect, guides);
+    const FlRect rect = painted->rect;
+    const bool halved = fl_field_px(painted->style->exemplar) == 2;
+    fl_followed_point_move(&report->painter[p].point, halved ? fl_rect_halved(rect) : rect, guides);
     bool done = true;
     if (shows_guides(report, frame)) {
         g_mutex_lock(&report->lock);
@@ -206,7 +208,8 @@ static void write_points(FlReport *report, GString *json, bool pictures)
     fl_json_begin(json, "points", '[');
     for (int p = 0; p < report->shapes->n_painted; p++) {
         FlFollowedPoint *point = &report->painter[p].point;
-        const float values[] = {point->x, point->y, point->turn, point->found};
+        const float px = (float)fl_field_px(report->shapes->painted[p].style->exemplar);
+        const float values[] = {px * point->x, px * point->y, point->turn, point->found};
         if (!point->here) {
             fl_json_text(json, NULL, NULL);
             continue;

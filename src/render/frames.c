@@ -52,8 +52,7 @@ static bool is_empty(const FlGuides *guides)
 static bool export_picture(const FlPlan *plan, const FlPainter *painter, int frame, GError **error)
 {
     const FlPaintedRegion *painted = &painter->result;
-    const bool rests =
-        frame > 0 && painted->stats.n_levels == 0 && !is_empty(fl_painter_guides(painter));
+    const bool rests = frame > 0 && painted->stats.n_levels == 0 && !is_empty(&painter->guides);
     const int before = frame - painter->plan->settings.hold;
     g_auto(FlGuidePairs) pairs = {0};
     if (painted->stats.n_levels > 0 &&
@@ -75,10 +74,9 @@ static bool inspect_picture(const FlFrames *frames, int p, int frame, GError **e
     const FlPlan *plan = frames->plan;
     const FlPainter *painter = frames->painters.painter[p];
     const bool is_new = frame % painter->plan->settings.hold == 0;
-    return fl_report_guides(frames->report, p, &painter->result, frame, fl_painter_guides(painter),
-                            error) &&
+    return fl_report_guides(frames->report, p, &painter->result, frame, &painter->guides, error) &&
            (!plan->out.dump || !is_new ||
-            fl_dump_frame(plan->out.dump, &painter->result, fl_painter_guides(painter),
+            fl_dump_frame(plan->out.dump, &painter->result, &painter->guides,
                           fl_drawing_number(plan->shapes.drawing, frame), error)) &&
            (!exports(plan) || !is_new || export_picture(plan, painter, frame, error));
 }

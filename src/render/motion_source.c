@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/spill.h"
+#include "guides/guides.h"
 #include "guides/half_guides.h"
 #include <string.h>
 

@@ -354,8 +354,7 @@ bool fl_painter_frame(FlPainter *painter, int frame, GError **error)
     if (frame % hold != 0 || k < painter->next)
         return true;
     if (!paint_picture(painter, k, index, error) ||
-        !fl_loop_blend(&painter->loop, index, &painter->result, error) ||
-        !fl_painter_show_guides(painter, error))
+        !fl_loop_blend(&painter->loop, index, &painter->result, error))
         return false;
     painter->result.seconds = fl_seconds_since(start);
     return true;

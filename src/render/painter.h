@@ -37,11 +37,10 @@ typedef struct FlPainter {
     int alone;                 // picture that the guides are of; -1: all
     FlKeptGuides kept[FL_KEPT_GUIDES];
     FlGuides guides; // of the picture, for the engine; empty: it was not painted
-    FlGuides shown;  // the same for inspection, where the picture has another size; else empty
     void *paint;     // the state of plan->engine; NULL: all pictures are known
     FlReuse reuse;
     bool wants_view;   // result.view is filled, which takes the memory of a frame
-    bool wants_guides; // fl_painter_guides() has those of every picture
+    bool wants_guides; // `guides` stay after every picture, for inspection
 } FlPainter;
 
 /** Takes `reuse` over. A painter that was used keeps its guides for the whole film. */
@@ -83,9 +82,6 @@ int fl_painter_seek(FlPainter *painter, int frame, GError **error);
  * painted from its beginning all the same. */
 int fl_painter_start_at(FlPainter *painter, int frame, GError **error);
 
-/** The guides of the last picture, if painter->wants_guides: of all of result.rect. */
-const FlGuides *fl_painter_guides(const FlPainter *painter);
-
 /** Frees the guides of the last picture. */
 void fl_painter_drop_guides(FlPainter *painter);
 
@@ -120,6 +116,3 @@ bool fl_painter_rests(FlPainter *painter, int last);
 
 /** Makes the guides of the painter's picture: painter->guides. */
 bool fl_painter_make_guides(FlPainter *painter, GError **error);
-
-/** Brings the guides that are wanted to the size of the picture. */
-bool fl_painter_show_guides(FlPainter *painter, GError **error);

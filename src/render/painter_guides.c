@@ -3,7 +3,6 @@
 #include "base/alloc.h"
 #include "base/windows.h"
 #include "guides/flow_file.h"
-#include "guides/half_guides.h"
 #include "guides/rim.h"
 #include <math.h>
 #include <string.h>
@@ -439,25 +438,7 @@ bool fl_painter_make_guides(FlPainter *painter, GError **error)
            read_map(painter, guides, error);
 }
 
-/* ---- inspection ------------------------------------------------------------------------------ */
-
-const FlGuides *fl_painter_guides(const FlPainter *painter)
-{
-    return painter->shown.mask ? &painter->shown : &painter->guides;
-}
-
 void fl_painter_drop_guides(FlPainter *painter)
 {
     fl_guides_clear(&painter->guides);
-    fl_guides_clear(&painter->shown);
-}
-
-bool fl_painter_show_guides(FlPainter *painter, GError **error)
-{
-    const FlRect rect = painter->result.rect;
-    if (!halves(painter) || !painter->wants_guides || !painter->guides.mask)
-        return true;
-    g_auto(FlGuides) half = painter->guides;
-    painter->guides = (FlGuides){0};
-    return fl_guides_double(&half, rect.width, rect.height, &painter->shown, error);
 }

@@ -4,7 +4,6 @@
 #include "base/curves.h"
 #include "base/rng.h"
 #include "base/schedule.h"
-#include "guides/half_guides.h"
 #include "synth/carry.h"
 #include "synth/drying.h"
 #include "synth/patch_pairs.h"
@@ -37,9 +36,6 @@ static void clear_frame(FlSynth *synth)
     for (int l = 0; l < synth->n_levels; l++)
         fl_nnf_clear(&synth->nnf[l]);
     fl_target_clear(&synth->target);
-    fl_nnf_clear(&synth->shown);
-    g_clear_pointer(&synth->shown_temporal, g_free);
-    g_clear_pointer(&synth->shown_weight, g_free);
     g_clear_pointer(&synth->tone, free);
     synth->view = (FlSynthView){0};
 }
@@ -315,48 +311,13 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
     return done;
 }
 
-/* A plane of a view of `channels` in the size of the picture, with room in *shown. */
-static bool double_plane(const float **plane, FlRect rect, size_t channels, float **shown,
-                         GError **error)
-{
-    if (!*plane)
-        return true;
-    *shown = fl_alloc_unset(channels * fl_rect_pixels(rect), sizeof **shown, "a view", error);
-    if (!*shown)
-        return false;
-    fl_plane_double(*plane, rect.width, rect.height, channels * sizeof **shown, *shown);
-    *plane = *shown;
-    return true;
-}
-
-/* The view in the size of the picture. */
-static bool double_view(FlSynth *synth, GError **error)
-{
-    FlSynthView *view = &synth->view;
-    const FlRect page = {0, 0, synth->last.painted_width, synth->last.painted_height};
-    if (!synth->exemplar->enlargement || !view->nnf || synth->shown.match)
-        return true;
-    g_auto(FlBlocks) all = {0};
-    const FlRect rect = view->rect = fl_rect_doubled(view->rect, page);
-    if (!fl_nnf_init(&synth->shown, rect.width, rect.height, error) ||
-        !double_plane(&view->temporal, rect, 3, &synth->shown_temporal, error) ||
-        !double_plane(&view->temporal_weight, rect, 1, &synth->shown_weight, error))
-        return false;
-    fl_blocks_init_full(&all, rect.width, rect.height);
-    fl_nnf_upscale(view->nnf, fl_enlargement_level(synth->exemplar->enlargement), &all,
-                   &synth->shown);
-    view->nnf = &synth->shown;
-    return true;
-}
-
 bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error)
 {
     FlFrameStats no_stats;
     FlFrameStats *const s = stats ? stats : &no_stats;
     *s = (FlFrameStats){0};
-    const bool done =
-        paint(synth, guides, rgb, s, view, error) && (!view || double_view(synth, error));
+    const bool done = paint(synth, guides, rgb, s, view, error);
     if (view)
         *view = synth->view;
     else

@@ -24,8 +24,6 @@ struct FlSynth {
     FlTarget target; // of the frame in hand; kept until the next for FlSynthView
     FlNnf nnf[FL_MAX_LEVELS];
     FlSynthView view; // of the last frame that was painted, where it is needed
-    FlNnf shown;      // its field, T_temp and m in the size of the picture, where that is another
-    float *shown_temporal, *shown_weight;
 };
 
 /** Seconds since a monotonic time, which moves on to now. */

@@ -22,8 +22,8 @@ typedef struct FlFrameStats {
     double seconds_target, seconds_temporal, seconds_search, seconds_vote;
 } FlFrameStats;
 
-/** The synthesis of a frame, for inspection: valid until the next frame. All of level 0 and `rect`,
- * in the size of the picture; matches point into frames of that size. */
+/** The synthesis of a frame, for inspection: valid until the next frame. All of level 0 and `rect`
+ * in px of the guides; matches point into the exemplar's own frames. */
 typedef struct FlSynthView {
     FlRect rect;
     const FlNnf *nnf;
