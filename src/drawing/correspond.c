@@ -52,7 +52,7 @@ static bool fit_line(const FlSamples *s, FlAffine *back)
     const double was = sqrt(fl_distance2(s->before[end], a)),
                  is = sqrt(fl_distance2(s->now[end], b));
     if (!(was > 0.5 && is > 0.5)) { // a dot
-        *back = (FlAffine){1, 0, 0, 1, a.x - b.x, a.y - b.y};
+        *back = fl_affine_move(a.x - b.x, a.y - b.y);
         return true;
     }
     const FlPoint e = {(s->now[end].x - b.x) / is, (s->now[end].y - b.y) / is};
@@ -272,7 +272,7 @@ static bool by_transform(const Pair *p, FlAffine *back)
     FlAffine inverse;
     if (!fl_affine_invert(&p->b->ctm, &inverse) || !locally_same(p))
         return false;
-    *back = fl_affine_multiply(&p->a->ctm, &inverse);
+    *back = fl_affine_multiply(p->a->ctm, inverse);
     return fl_affine_invert(&p->a->ctm, &inverse);
 }
 

@@ -3,13 +3,13 @@
 #include <glib.h>
 #include <math.h>
 
-FlAffine fl_affine_multiply(const FlAffine *outer, const FlAffine *inner)
+FlAffine fl_affine_multiply(FlAffine outer, FlAffine inner)
 {
-    const FlPoint at = fl_affine_apply(outer, (FlPoint){inner->x0, inner->y0});
-    return (FlAffine){outer->xx * inner->xx + outer->xy * inner->yx,
-                      outer->yx * inner->xx + outer->yy * inner->yx,
-                      outer->xx * inner->xy + outer->xy * inner->yy,
-                      outer->yx * inner->xy + outer->yy * inner->yy,
+    const FlPoint at = fl_affine_apply(&outer, (FlPoint){inner.x0, inner.y0});
+    return (FlAffine){outer.xx * inner.xx + outer.xy * inner.yx,
+                      outer.yx * inner.xx + outer.yy * inner.yx,
+                      outer.xx * inner.xy + outer.xy * inner.yy,
+                      outer.yx * inner.xy + outer.yy * inner.yy,
                       at.x,
                       at.y};
 }

@@ -19,8 +19,13 @@ static inline FlPoint fl_affine_apply(const FlAffine *m, FlPoint p)
     return (FlPoint){m->xx * p.x + m->xy * p.y + m->x0, m->yx * p.x + m->yy * p.y + m->y0};
 }
 
+static inline FlAffine fl_affine_move(double x, double y)
+{
+    return (FlAffine){1, 0, 0, 1, x, y};
+}
+
 /** The composition that applies `inner` first. */
-FlAffine fl_affine_multiply(const FlAffine *outer, const FlAffine *inner);
+FlAffine fl_affine_multiply(FlAffine outer, FlAffine inner);
 
 /** Returns: false if m is singular. */
 bool fl_affine_invert(const FlAffine *m, FlAffine *inverse);

@@ -26,12 +26,6 @@ static char *value_or_attribute(GHashTable *effects, const xmlNode *node, const 
     return value && *value ? g_strdup(value) : attribute ? g_strdup(attribute) : NULL;
 }
 
-static void set_matrix(xmlNode *node, const char *name, const FlAffine *m)
-{
-    g_autofree char *text = fl_affine_text(m);
-    fl_set_attribute(node, name, text);
-}
-
 /* ---- boxes ----------------------------------------------------------------------------------- */
 
 /** The width of a stroke that is drawn; 0 without one. */
@@ -74,11 +68,6 @@ static FlCssBox reference_box(GHashTable *effects, const xmlNode *node, const Fl
     return box;
 }
 
-static void multiply(FlAffine *all, const FlAffine *inner)
-{
-    *all = fl_affine_multiply(all, inner);
-}
-
 /** Multiplies by one of the properties translate, rotate and scale; false if it cannot be read. */
 static bool multiply_property(FlAffine *all, const char *function, const char *value,
                               const FlCssUnits *units)
@@ -100,7 +89,7 @@ static bool multiply_property(FlAffine *all, const char *function, const char *v
     }
     if (!fl_affine_parse_css(text, units, &one, NULL))
         return false;
-    multiply(all, &one);
+    *all = fl_affine_multiply(*all, one);
     return true;
 }
 
@@ -140,12 +129,10 @@ static bool multiply_offset(FlAffine *all, GHashTable *effects, const FlCssUnits
             return false;
         angle += extra;
     }
-    const FlAffine move = {1, 0, 0, 1, at.x - origin.x, at.y - origin.y};
     const FlAffine turn = fl_affine_rotation(angle + (follows ? direction : 0));
-    const FlAffine hold = {1, 0, 0, 1, origin.x - anchor.x, origin.y - anchor.y};
-    multiply(all, &move);
-    multiply(all, &turn);
-    multiply(all, &hold);
+    *all = fl_affine_multiply(*all, fl_affine_move(at.x - origin.x, at.y - origin.y));
+    *all = fl_affine_multiply(*all, turn);
+    *all = fl_affine_multiply(*all, fl_affine_move(origin.x - anchor.x, origin.y - anchor.y));
     return true;
 }
 
@@ -183,8 +170,7 @@ static const char *apply_transform(GHashTable *effects, xmlNode *node, const FlC
     FlPoint origin = {box.x, box.y};
     const bool bad_origin = origin_text && !fl_css_position(origin_text, &in_box, box, &origin);
     in_box.bare = false;
-    FlAffine all = {1, 0, 0, 1, origin.x, origin.y};
-    const FlAffine back = {1, 0, 0, 1, -origin.x, -origin.y};
+    FlAffine all = fl_affine_move(origin.x, origin.y);
     if (css && *css && !fl_affine_parse_css(css, &in_box, &own, &flat))
         return "transform";
     if (!multiply_property(&all, "translate", translate, &in_box))
@@ -195,9 +181,8 @@ static const char *apply_transform(GHashTable *effects, xmlNode *node, const FlC
         return "scale";
     if (!multiply_offset(&all, effects, units, box, origin))
         return "offset-path";
-    multiply(&all, &own);
-    multiply(&all, &back);
-    set_matrix(node, name, &all);
+    all = fl_affine_multiply(all, own);
+    fl_set_affine(node, name, fl_affine_multiply(all, fl_affine_move(-origin.x, -origin.y)));
     return bad_origin                  ? "transform-origin"
            : !known                    ? "transform-box"
            : flat || !fl_is_root(node) ? NULL // browsers draw shapes flat as well
@@ -588,7 +573,7 @@ static void keep_stroke(xmlNode *node, const FlAffine *around, const FlAffine *a
     }
     xmlNodeSetName(node, (const xmlChar *)"path");
     fl_set_attribute(node, "d", d);
-    set_matrix(node, "transform", &back);
+    fl_set_affine(node, "transform", back);
 }
 
 static void visit_strokes(FlInheritance *pages, xmlNode *node, const FlCssUnits *units)
@@ -596,7 +581,7 @@ static void visit_strokes(FlInheritance *pages, xmlNode *node, const FlCssUnits 
     g_autofree char *vector = fl_property(node, "vector-effect");
     if (vector && strcmp(vector, "non-scaling-stroke") == 0 && !fl_is_root(node)) {
         const FlInherited around = fl_inherited_by(pages, node->parent);
-        const FlAffine own = fl_affine_of(node), all = fl_affine_multiply(&around.ctm, &own);
+        const FlAffine all = fl_affine_multiply(around.ctm, fl_affine_of(node));
         FlCssUnits inner = *units;
         inner.width = around.width, inner.height = around.height;
         keep_stroke(node, &around.ctm, &all, &inner);

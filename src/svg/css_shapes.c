@@ -45,12 +45,11 @@ static void add_cubic(Bounds *bounds, const FlCubic *cubic, const FlAffine *map)
         c.p[k] = fl_affine_apply(map, cubic->p[k]);
     add_point(bounds, c.p[0]);
     add_point(bounds, c.p[3]);
-    const FlAffine none = FL_AFFINE_NONE;
     for (int axis = 0; axis < 2; axis++) {
         const int n = axis ? turns(c.p[0].y, c.p[1].y, c.p[2].y, c.p[3].y, t)
                            : turns(c.p[0].x, c.p[1].x, c.p[2].x, c.p[3].x, t);
         for (int k = 0; k < n; k++)
-            add_point(bounds, fl_cubic_at(&c, &none, t[k]));
+            add_point(bounds, fl_cubic_at(&c, &FL_AFFINE_NONE, t[k]));
     }
 }
 
@@ -67,10 +66,10 @@ static void add_children(Bounds *bounds, const xmlNode *node, const FlCssUnits *
 {
     const double x = fl_length_of(node, "x", units, units->width);
     const double y = fl_length_of(node, "y", units, units->height);
-    const FlAffine place = {1, 0, 0, 1, x, y};
-    const FlAffine inner = fl_is(node, "svg") ? fl_affine_multiply(map, &place) : *map;
+    const FlAffine inner =
+        fl_is(node, "svg") ? fl_affine_multiply(*map, fl_affine_move(x, y)) : *map;
     FL_EACH_ELEMENT (child, node) {
-        const FlAffine own = fl_affine_of(child), all = fl_affine_multiply(&inner, &own);
+        const FlAffine all = fl_affine_multiply(inner, fl_affine_of(child));
         if (!fl_is_undrawn(child))
             add_element(bounds, child, units, &all, depth + 1);
     }
@@ -99,8 +98,7 @@ static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *u
 bool fl_css_fill_box(const xmlNode *node, const FlCssUnits *units, FlCssBox *box)
 {
     Bounds b = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    const FlAffine none = FL_AFFINE_NONE;
-    add_element(&b, node, units, &none, 0);
+    add_element(&b, node, units, &FL_AFFINE_NONE, 0);
     const bool found = b.right >= b.left && b.bottom >= b.top;
     *box = found ? (FlCssBox){b.left, b.top, b.right - b.left, b.bottom - b.top} : (FlCssBox){0};
     return found;
@@ -111,7 +109,6 @@ bool fl_css_fill_box(const xmlNode *node, const FlCssUnits *units, FlCssBox *box
 double fl_css_walk_along(const FlOutlines *outlines, double target, FlPoint *place,
                          double *direction)
 {
-    const FlAffine none = FL_AFFINE_NONE;
     double length = 0;
     *place = outlines->n_cubics ? outlines->cubic[0].p[0] : (FlPoint){0, 0};
     *direction = 0;
@@ -120,7 +117,7 @@ double fl_css_walk_along(const FlOutlines *outlines, double target, FlPoint *pla
         const int n = 64;
         FlPoint from = cubic->p[0];
         for (int k = 1; k <= n; k++) {
-            const FlPoint to = fl_cubic_at(cubic, &none, (double)k / n);
+            const FlPoint to = fl_cubic_at(cubic, &FL_AFFINE_NONE, (double)k / n);
             const double step = hypot(to.x - from.x, to.y - from.y);
             if (step > 0) {
                 const double t = CLAMP((target - length) / step, 0, 1);

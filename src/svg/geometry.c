@@ -155,7 +155,7 @@ void fl_outlines_scale(FlOutlines *outlines, double factor)
 {
     const FlAffine scale = {factor, 0, 0, factor, 0, 0};
     for (int i = 0; i < outlines->n_leaves; i++)
-        outlines->leaf[i].ctm = fl_affine_multiply(&scale, &outlines->leaf[i].ctm);
+        outlines->leaf[i].ctm = fl_affine_multiply(scale, outlines->leaf[i].ctm);
 }
 
 void fl_outlines_free(FlOutlines *outlines)

@@ -58,18 +58,16 @@ static void enter_viewport(const FlInheritance *inheritance, const xmlNode *node
     } else {
         const double x = fl_length_in(inheritance, node, "x", w, 0, broken);
         const double y = fl_length_in(inheritance, node, "y", h, 0, broken);
-        const FlAffine place = {1, 0, 0, 1, x, y};
         s->width = fl_length_in(inheritance, node, "width", w, w, broken);
         s->height = fl_length_in(inheritance, node, "height", h, h, broken);
-        s->ctm = fl_affine_multiply(&s->ctm, &place);
+        s->ctm = fl_affine_multiply(s->ctm, fl_affine_move(x, y));
         g_autofree char *overflow = fl_property(node, "overflow");
         const bool shown =
             overflow && (g_str_equal(overflow, "visible") || g_str_equal(overflow, "auto"));
         s->clipped |= !shown;
     }
     if (box[2] > 0 && box[3] > 0) {
-        const FlAffine fit = fl_fit_box(box, s->width, s->height, ratio);
-        s->ctm = fl_affine_multiply(&s->ctm, &fit);
+        s->ctm = fl_affine_multiply(s->ctm, fl_fit_box(box, s->width, s->height, ratio));
         s->width = box[2], s->height = box[3];
     }
 }
@@ -130,8 +128,7 @@ FlInherited fl_inherited_from(FlInheritance *inheritance, const xmlNode *node,
                               const FlInherited *around)
 {
     FlInherited s = *around;
-    const FlAffine m = fl_affine_of(node);
-    s.ctm = fl_affine_multiply(&s.ctm, &m);
+    s.ctm = fl_affine_multiply(s.ctm, fl_affine_of(node));
     if (fl_is(node, "svg"))
         enter_viewport(inheritance, node, &s);
     enter_properties(inheritance, node, &s);

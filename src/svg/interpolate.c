@@ -386,7 +386,7 @@ static FlAffine put_together(const Parts *p)
 {
     const FlAffine turn = fl_affine_rotation(p->turn * 180 / G_PI);
     const FlAffine shape = {p->sx, 0, p->sx * p->skew, p->sy, 0, 0};
-    FlAffine m = fl_affine_multiply(&turn, &shape);
+    FlAffine m = fl_affine_multiply(turn, shape);
     m.x0 = p->x, m.y0 = p->y;
     return m;
 }

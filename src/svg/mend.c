@@ -292,14 +292,13 @@ static void mend_image(xmlNode *step, int number)
     const double x = fl_length_of(place, "x", &units, 0), y = fl_length_of(place, "y", &units, 0);
     if (!href || *href != '#' || (x == 0 && y == 0))
         return;
-    const FlAffine move = {1, 0, 0, 1, x, y};
     g_autofree char *id = g_strdup_printf("fl-image-%d", number);
-    g_autofree char *name = g_strconcat("#", id, NULL), *text = fl_affine_text(&move);
+    g_autofree char *name = g_strconcat("#", id, NULL);
     xmlNode *defs = xmlNewChild(step->parent->parent, step->ns, (const xmlChar *)"defs", NULL);
     xmlNode *group = xmlNewChild(defs, step->ns, (const xmlChar *)"g", NULL);
     fl_set_attribute(group, "id", id);
     fl_set_attribute(xmlNewChild(group, step->ns, (const xmlChar *)"use", NULL), "href", href);
-    fl_set_attribute(group->children, "transform", text);
+    fl_set_affine(group->children, "transform", fl_affine_move(x, y));
     fl_set_attribute(step, "href", name);
 }
 

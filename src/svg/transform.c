@@ -99,10 +99,8 @@ static bool map_of(const char *name, const double *v, int n, Space *space)
             (double[]){name[6] == 'x', name[6] == 'y', name[6] != 'x' && name[6] != 'y'}, v[0],
             space);
     else if (IS("rotate", 3)) { // about a point
-        const FlAffine there = {1, 0, 0, 1, v[1], v[2]}, back = {1, 0, 0, 1, -v[1], -v[2]};
-        FlAffine turn = fl_affine_rotation(v[0]);
-        turn = fl_affine_multiply(&there, &turn);
-        turn = fl_affine_multiply(&turn, &back);
+        FlAffine turn = fl_affine_multiply(fl_affine_move(v[1], v[2]), fl_affine_rotation(v[0]));
+        turn = fl_affine_multiply(turn, fl_affine_move(-v[1], -v[2]));
         *space = space_of(&turn);
     } else if (IS("rotate3d", 4))
         return rotation_in_space(v, v[3], space);
@@ -204,6 +202,12 @@ char *fl_affine_text(const FlAffine *m)
         g_string_append_printf(text, "%s%s", i ? ", " : "", number);
     }
     return g_string_free(g_string_append_c(text, ')'), FALSE);
+}
+
+void fl_set_affine(xmlNode *node, const char *name, FlAffine m)
+{
+    g_autofree char *text = fl_affine_text(&m);
+    fl_set_attribute(node, name, text);
 }
 
 FlAffine fl_affine_of(const xmlNode *node)

@@ -21,5 +21,8 @@ bool fl_affine_parse_css(const char *text, const FlCssUnits *units, FlAffine *m,
 /** "matrix(…)", which both read; to be freed. */
 char *fl_affine_text(const FlAffine *m);
 
+/** Sets an attribute to that text. */
+void fl_set_affine(xmlNode *node, const char *name, FlAffine m);
+
 /** The transform of an element; the identity if librsvg rejects the attribute. */
 FlAffine fl_affine_of(const xmlNode *node);

@@ -164,10 +164,8 @@ static void place_gradient(const Turned *t, xmlNode *own, const xmlNode *server,
     FlAffine turn = FL_AFFINE_NONE;
     if (transform)
         fl_affine_parse(transform, &turn);
-    turn = fl_affine_multiply(&place, &turn);
-    g_autofree char *text = fl_affine_text(&turn);
     fl_set_attribute(own, "gradientUnits", "userSpaceOnUse");
-    fl_set_attribute(own, "gradientTransform", text);
+    fl_set_affine(own, "gradientTransform", fl_affine_multiply(place, turn));
     for (size_t i = 0; i < G_N_ELEMENTS(shares); i++)
         set_share(t, own, server, shares[i][0], shares[i][1], 0, 1);
 }
@@ -196,10 +194,9 @@ static void place_pattern(const Turned *t, xmlNode *own, const xmlNode *server, 
         return;
     if (!content)
         return;
-    g_autofree char *text = fl_affine_text(&map);
     xmlNode *group = xmlNewChild(own, own->ns, (const xmlChar *)"g", NULL);
     xmlAddChildList(group, xmlDocCopyNodeList(own->doc, content->children));
-    fl_set_attribute(group, "transform", text);
+    fl_set_affine(group, "transform", map);
     fl_set_attribute(own, "patternTransform", server_attribute(t, server, "patternTransform"));
     fl_set_attribute(own, "patternContentUnits", "userSpaceOnUse");
     fl_set_attribute(own, "viewBox", NULL);
@@ -236,7 +233,7 @@ static void mend_paint(Turned *t, xmlNode *node, const char *property, bool turn
 
 static void visit(Turned *t, xmlNode *node, const FlAffine *around)
 {
-    const FlAffine own = fl_affine_of(node), map = fl_affine_multiply(around, &own);
+    const FlAffine map = fl_affine_multiply(*around, fl_affine_of(node));
     const bool upright = (map.xy == 0 && map.yx == 0) || (map.xx == 0 && map.yy == 0);
     const bool turned = !upright && map.xx * map.yy != map.xy * map.yx;
     if (turned && t->n_copied < MOST_COPIED)
@@ -253,12 +250,11 @@ static void visit(Turned *t, xmlNode *node, const FlAffine *around)
 void fl_document_mend_turned(xmlDoc *doc, GHashTable *ids, const char *path, int number,
                              FlWarnings *warnings)
 {
-    const FlAffine none = FL_AFFINE_NONE;
     xmlNode *root = xmlDocGetRootElement(doc);
     double box[4] = {0, 0, 300, 150};
     fl_view_box(root, box);
     Turned t = {.ids = ids, .units = {.width = box[2], .height = box[3]}};
-    visit(&t, root, &none);
+    visit(&t, root, &FL_AFFINE_NONE);
     if (t.n_copied >= MOST_COPIED)
         fl_warnings_add(warnings, path, number, NULL,
                         "too many turned shapes have a blur or a pattern; those of the rest may "

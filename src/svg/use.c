@@ -151,13 +151,11 @@ void fl_use_place(xmlNode *use, const FlCssUnits *units)
 {
     const double x = fl_length_of(use, "x", units, units->width);
     const double y = fl_length_of(use, "y", units, units->height);
-    const FlAffine own = fl_affine_of(use), move = {1, 0, 0, 1, x, y};
-    const FlAffine both = fl_affine_multiply(&own, &move);
-    g_autofree char *text = fl_affine_text(&both);
     fl_set_attribute(use, "x", NULL);
     fl_set_attribute(use, "y", NULL);
     if (x != 0 || y != 0)
-        fl_set_attribute(use, "transform", text);
+        fl_set_affine(use, "transform",
+                      fl_affine_multiply(fl_affine_of(use), fl_affine_move(x, y)));
 }
 
 void fl_uses_make_groups(GHashTable *copies)

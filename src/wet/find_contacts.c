@@ -188,7 +188,7 @@ static bool find_earlier(const Pair *pair, int then, FlRect part, float *earlier
         return true; // one of them was missing
     if (!near_init(pair, then, rect, &near, error))
         return false;
-    const FlAffine came = fl_affine_multiply(&back, &rest);
+    const FlAffine came = fl_affine_multiply(back, rest);
     for (int y = 0; y < part.height; y++)
         for (int x = 0; x < part.width; x++) {
             const FlPoint place = fl_affine_apply(&came, (FlPoint){part.x + x, part.y + y});

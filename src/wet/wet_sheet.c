@@ -173,7 +173,7 @@ bool fl_wet_sheet_turn(FlWetSheet *sheet, const FlAffine *from, GError **error)
     free(sheet->cell);
     sheet->cell = moved;
     sheet->wet = wet;
-    sheet->fibres.place = fl_affine_multiply(&sheet->fibres.place, from);
+    sheet->fibres.place = fl_affine_multiply(sheet->fibres.place, *from);
     return true;
 }
 

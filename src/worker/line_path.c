@@ -92,7 +92,7 @@ FlLinePaths *fl_line_paths_new(const FlOutlines *outlines, int leaf, double unit
     *paths = (FlLinePaths){.point = g_array_new(FALSE, FALSE, sizeof(FlLinePoint)),
                            .path = g_array_new(FALSE, FALSE, sizeof(FlLinePath)),
                            .unit_px = (float)unit,
-                           .to_units = fl_affine_multiply(&units, &inverse)};
+                           .to_units = fl_affine_multiply(units, inverse)};
     const double step_px = fills ? STEP_PX : MAX(STEP_PX, unit / 16);
     for (int k = g->first_subpath; k < g->first_subpath + g->n_subpaths; k++)
         add_subpath(paths, outlines, &g->ctm, &outlines->subpath[k], step_px, fills);
