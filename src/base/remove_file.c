@@ -1,3 +1,4 @@
+#include "base/error.h"
 #include "base/file.h"
 
 #include <errno.h>
@@ -14,7 +15,5 @@ bool fl_file_remove(const char *path, GError **error)
     }
     if (g_remove(path) == 0 || errno == ENOENT)
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be removed: %s", path,
-                g_strerror(errno));
-    return false;
+    return fl_fail(error, FL_ERROR_OUTPUT, "%s: cannot be removed: %s", path, g_strerror(errno));
 }

@@ -1,5 +1,6 @@
 #include "live_drop.h"
 
+#include "base/error.h"
 #include "base/file.h"
 
 #include <gio/gio.h>
@@ -20,13 +21,11 @@ static bool add_file(FlLiveDrop *drop, SoupMessageHeaders *headers, GBytes *body
     const char *data = g_bytes_get_data(body, &bytes), *name = NULL;
     if (soup_message_headers_get_content_disposition(headers, &disposition, &params))
         name = g_hash_table_lookup(params, "filename");
-    if (!name || !g_regex_match_simple(KNOWN, name, 0, 0)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: expected drawings, .svg or .svgz, and their style sheets, .css, or an "
-                    "animation, .json or .lottie",
-                    name ? name : "a file without a name");
-        return false;
-    }
+    if (!name || !g_regex_match_simple(KNOWN, name, 0, 0))
+        return fl_fail(error, FL_ERROR_INPUT,
+                       "%s: expected drawings, .svg or .svgz, and their style sheets, .css, or an "
+                       "animation, .json or .lottie",
+                       name ? name : "a file without a name");
     g_autofree char *file = g_build_filename(drop->files, name, NULL);
     const bool first = !drop->inputs[0];
     g_free(drop->inputs[0]);

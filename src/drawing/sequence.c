@@ -151,10 +151,9 @@ static bool add_folder(GArray *found, const char *folder, FlWarnings *warnings, 
         n_svg += is_svg(names->pdata[i]);
     if (n_svg == 0 || groups->len > 1) {
         g_autofree char *list = group_list(groups);
-        g_set_error(
-            error, FL_ERROR, FL_ERROR_INPUT, "%s: %s%s", folder,
+        return fl_fail(
+            error, FL_ERROR_INPUT, "%s: %s%s", folder,
             n_svg ? "several sequences; name one of them: " : "no .svg files in this folder", list);
-        return false;
     }
     for (guint i = 0; i < names->len; i++) {
         int number = 0;
@@ -484,11 +483,9 @@ FlSequence *fl_sequence_open(const FlSequenceOptions *options, FlWarnings *warni
             return NULL;
     } else {
         for (int i = 0; i < n_inputs; i++) {
-            if (g_file_test(inputs[i], G_FILE_TEST_IS_DIR)) {
-                fl_fail(error, FL_ERROR_INPUT,
-                        "%s: is a folder; expected one folder or several files", inputs[i]);
-                return NULL;
-            }
+            if (g_file_test(inputs[i], G_FILE_TEST_IS_DIR))
+                return fl_none(error, FL_ERROR_INPUT,
+                               "%s: is a folder; expected one folder or several files", inputs[i]);
             if (!add_file(found, inputs[i], error))
                 return NULL;
         }

@@ -25,20 +25,17 @@ struct FlControlMap {
 
 FlControlMap *fl_control_map_open(const char *pattern, GError **error)
 {
-    FlSeries *series = fl_input_is_pattern(pattern) ? fl_series_of_pattern(pattern, error)
-                                                    : fl_series_of_file(pattern);
+    g_autoptr(FlSeries) series = fl_input_is_pattern(pattern) ? fl_series_of_pattern(pattern, error)
+                                                              : fl_series_of_file(pattern);
     if (!series)
         return NULL;
-    if (!g_file_test(series->path[0], G_FILE_TEST_IS_REGULAR)) {
-        fl_fail(error, FL_ERROR_INPUT,
-                "%s: there is no such file; expected a picture, or a pattern such as "
-                "map_%%04d.png",
-                pattern);
-        fl_series_free(series);
-        return NULL;
-    }
+    if (!g_file_test(series->path[0], G_FILE_TEST_IS_REGULAR))
+        return fl_none(error, FL_ERROR_INPUT,
+                       "%s: there is no such file; expected a picture, or a pattern such as "
+                       "map_%%04d.png",
+                       pattern);
     FlControlMap *map = g_new0(FlControlMap, 1);
-    map->series = series;
+    map->series = g_steal_pointer(&series);
     g_mutex_init(&map->lock);
     return map;
 }

@@ -264,7 +264,7 @@ static int compare_ints(const void *a, const void *b)
 
 GArray *fl_range_parse(const char *range, int film_first, int film_last, GError **error)
 {
-    GArray *numbers = g_array_new(FALSE, FALSE, sizeof(int));
+    g_autoptr(GArray) numbers = g_array_new(FALSE, FALSE, sizeof(int));
     g_auto(GStrv) parts = g_strsplit(range, ",", -1);
     bool good = parts[0] != NULL;
     for (int i = 0; good && parts[i]; i++) {
@@ -273,21 +273,18 @@ GArray *fl_range_parse(const char *range, int film_first, int film_last, GError 
         for (int n = first; good && n <= last; n += step)
             g_array_append_val(numbers, n);
     }
-    if (!good) {
-        g_set_error(
-            error, FL_ERROR, FL_ERROR_USAGE,
+    if (!good)
+        return fl_none(
+            error, FL_ERROR_USAGE,
             "frames “%s”: expected numbers and ranges such as 1001-1096, 1-96x2, 1,5,9 or 12~1",
             range);
-        g_array_unref(numbers);
-        return NULL;
-    }
     g_array_sort(numbers, compare_ints);
     guint kept = 0;
     for (guint i = 0; i < numbers->len; i++)
         if (kept == 0 || g_array_index(numbers, int, i) != g_array_index(numbers, int, kept - 1))
             g_array_index(numbers, int, kept++) = g_array_index(numbers, int, i);
     g_array_set_size(numbers, kept);
-    return numbers;
+    return g_steal_pointer(&numbers);
 }
 
 char *fl_range_text(const GArray *numbers)

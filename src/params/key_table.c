@@ -120,16 +120,13 @@ const FlTableKey *fl_key_section_set(FlKeySection *section, const char *name, co
         return NULL;
     }
     const FlTableKey *key = &section->table->key[i];
-    if (section->n_values[i] > 0) {
-        fl_fail(error, section->mistake, "%s is given a second time", name);
-        return NULL;
-    }
+    if (section->n_values[i] > 0)
+        return fl_none(error, section->mistake, "%s is given a second time", name);
     section->n_values[i] = read_value(key, value, section->object);
     if (section->n_values[i] > 0)
         return key;
     g_autofree char *expected = expected_of(key, value);
-    fl_fail(error, section->mistake, "%s = %s: expected %s", name, value, expected);
-    return NULL;
+    return fl_none(error, section->mistake, "%s = %s: expected %s", name, value, expected);
 }
 
 int fl_key_section_count(const FlKeySection *section, const char *name)

@@ -173,8 +173,7 @@ char *fl_look_unpack(const char *path, GError **error)
 
 char *fl_look_unpack(const char *path, GError **error)
 {
-    fl_fail(error, FL_ERROR_INPUT, "%s: this build reads no looks; it needs libzip", path);
-    return NULL;
+    return fl_none(error, FL_ERROR_INPUT, "%s: this build reads no looks; it needs libzip", path);
 }
 
 #endif

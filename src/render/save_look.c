@@ -138,9 +138,8 @@ static char *pack_path(const FlOption *option, const char *value, const char *fo
         g_auto(GStrv) word = g_strsplit(words ? words : "", " ", -1);
         if (*value == '#' || g_strv_contains((const char *const *)word, value))
             return g_strdup(value);
-        fl_fail(error, FL_ERROR_USAGE, "%s: ‘%s’ in a look is one file; expected no pattern", value,
-                option->name);
-        return NULL;
+        return fl_none(error, FL_ERROR_USAGE, "%s: ‘%s’ in a look is one file; expected no pattern",
+                       value, option->name);
     }
     const char *name = name_of(packing, "files", value, &is_new);
     return !is_new || add_file(packing, value, name, error) ? g_strdup(name) : NULL;

@@ -29,11 +29,6 @@ void fl_style_free(FlStyle *style)
     g_free(style);
 }
 
-static bool broken(GError **error, const char *path, const char *what)
-{
-    return fl_fail(error, FL_ERROR_STYLE, "%s: %s", path, what);
-}
-
 /* The folder's only series of files with this ending, without gaps, such as frames/0001.png ... */
 static FlSeries *only_series(const char *folder, const char *ending, GError **error)
 {
@@ -41,21 +36,16 @@ static FlSeries *only_series(const char *folder, const char *ending, GError **er
     g_autoptr(GPtrArray) all = fl_series_in_folder(folder, endings, error);
     if (!all)
         return NULL;
-    if (all->len == 0) {
-        g_autofree char *what = g_strdup_printf(
-            "no numbered %s files: expected 0001%s, 0002%s … (fluidy-style import makes a style of "
-            "other pictures and of videos)",
-            ending, ending, ending);
-        broken(error, folder, what);
-        return NULL;
-    }
+    if (all->len == 0)
+        return fl_none(error, FL_ERROR_STYLE,
+                       "%s: no numbered %s files: expected 0001%s, 0002%s … (fluidy-style import "
+                       "makes a style of other pictures and of videos)",
+                       folder, ending, ending, ending);
     if (all->len > 1) {
         const FlSeries *first = g_ptr_array_index(all, 0), *second = g_ptr_array_index(all, 1);
-        g_autofree char *what =
-            g_strdup_printf("two kinds of names, %s and %s: expected one series",
-                            strrchr(first->path[0], '/') + 1, strrchr(second->path[0], '/') + 1);
-        broken(error, folder, what);
-        return NULL;
+        return fl_none(error, FL_ERROR_STYLE,
+                       "%s: two kinds of names, %s and %s: expected one series", folder,
+                       strrchr(first->path[0], '/') + 1, strrchr(second->path[0], '/') + 1);
     }
     g_autoptr(FlSeries) series = g_ptr_array_steal_index(all, 0);
     return fl_series_check(series, error) ? g_steal_pointer(&series) : NULL;
@@ -103,10 +93,9 @@ static bool read_pictures(FlStyle *style, const FlSeries *series, int first, con
 static FlSeries *read_frames(FlStyle *style, GError **error)
 {
     g_autofree char *folder = g_build_filename(style->path, "frames", NULL);
-    if (!g_file_test(folder, G_FILE_TEST_IS_DIR)) {
-        broken(error, folder, "no such folder: a style has its pictures there");
-        return NULL;
-    }
+    if (!g_file_test(folder, G_FILE_TEST_IS_DIR))
+        return fl_none(error, FL_ERROR_STYLE, "%s: no such folder: a style has its pictures there",
+                       folder);
     g_autoptr(FlSeries) series = only_series(folder, ".png", error);
     g_autoptr(FlPicture) first = series ? read_picture(series->path[0], error) : NULL;
     if (!first || !fl_style_allocate(style, first, series->n, error))
@@ -227,10 +216,8 @@ FlStyle *fl_style_load_until(const char *folder, const FlStop *stop, GError **er
     g_autoptr(FlStyle) style = new_style(folder);
     style->stop = stop;
     g_autofree char *manifest = g_build_filename(folder, "style.ini", NULL);
-    if (!g_file_test(folder, G_FILE_TEST_IS_DIR)) {
-        broken(error, folder, "no such folder: expected a style");
-        return NULL;
-    }
+    if (!g_file_test(folder, G_FILE_TEST_IS_DIR))
+        return fl_none(error, FL_ERROR_STYLE, "%s: no such folder: expected a style", folder);
     if (g_file_test(manifest, G_FILE_TEST_EXISTS) && !fl_manifest_read(style, manifest, error))
         return NULL;
     g_autoptr(FlSeries) frames = read_frames(style, error);

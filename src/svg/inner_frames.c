@@ -234,17 +234,15 @@ bool fl_inner_frames(xmlDoc *doc, const char *path, FlFramesFrom from, const FlM
     case FL_FRAMES_LAYERS:
         layers = frames_of(doc);
         frames->n = (int)layers->len;
-        if (frames->n < 2)
-            g_set_error(
-                error, FL_ERROR, FL_ERROR_INPUT,
-                "%s: no layers that could be frames; expected two or more groups at its top", path);
-        return frames->n >= 2;
+        return frames->n >= 2 ||
+               fl_fail(error, FL_ERROR_INPUT,
+                       "%s: no layers that could be frames; expected two or more groups at its top",
+                       path);
     case FL_FRAMES_PAGES:
         frames->n = pages;
-        if (pages < 1)
-            fl_fail(error, FL_ERROR_INPUT,
-                    "%s: no pages; expected those of Inkscape or the frames of FBF.SVG", path);
-        return pages >= 1;
+        return pages >= 1 ||
+               fl_fail(error, FL_ERROR_INPUT,
+                       "%s: no pages; expected those of Inkscape or the frames of FBF.SVG", path);
     case FL_FRAMES_TIME:
         if (frames_in_time(doc, path, moments, frames, error))
             return true;

@@ -168,10 +168,8 @@ static void clear_section(void *section)
 /* A pigment of the table, by its name, or one with K and S of its own. */
 static FlPigment *begin_pigment(FlRecipe *recipe, const char *name, GError **error)
 {
-    if (recipe->n_pigments == FL_MAX_PIGMENTS) {
-        fl_fail(error, FL_ERROR_INPUT, "more than %d pigments", FL_MAX_PIGMENTS);
-        return NULL;
-    }
+    if (recipe->n_pigments == FL_MAX_PIGMENTS)
+        return fl_none(error, FL_ERROR_INPUT, "more than %d pigments", FL_MAX_PIGMENTS);
     FlPigment *pigment = &recipe->pigments[recipe->n_pigments++];
     const FlPigment *known = fl_pigment_find(name);
     *pigment = known ? *known : (FlPigment){.density = .03f, .staining = 3, .granulation = .5f};
@@ -180,10 +178,8 @@ static FlPigment *begin_pigment(FlRecipe *recipe, const char *name, GError **err
 
 static FlEvent *begin_event(FlRecipe *recipe, GError **error)
 {
-    if (recipe->n_events == FL_MAX_EVENTS) {
-        fl_fail(error, FL_ERROR_INPUT, "more than %d events", FL_MAX_EVENTS);
-        return NULL;
-    }
+    if (recipe->n_events == FL_MAX_EVENTS)
+        return fl_none(error, FL_ERROR_INPUT, "more than %d events", FL_MAX_EVENTS);
     FlEvent *event = &recipe->events[recipe->n_events++];
     *event = (FlEvent){.radius = 10,
                        .wobble_px = 20,

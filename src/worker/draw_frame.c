@@ -129,11 +129,9 @@ static const FlLeaf *leaf_of(const Stage *stage, const FlDrawStep *step, GError 
     const FlLeaves *leaves = fl_svg_leaves(stage->svg);
     const GArray *list = step->leaf >= 0 ? leaves->leaf : leaves->unit;
     const guint index = (guint)(step->leaf >= 0 ? step->leaf : -1 - step->leaf);
-    if (index >= list->len) {
-        fl_fail(error, FL_ERROR_CHANGED, "%s: changed while it was being painted",
-                stage->frame->file);
-        return NULL;
-    }
+    if (index >= list->len)
+        return fl_none(error, FL_ERROR_CHANGED, "%s: changed while it was being painted",
+                       stage->frame->file);
     return step->leaf >= 0 ? &g_array_index(list, FlLeaf, index)
                            : &g_array_index(list, FlGroupUnit, index).leaf;
 }
