@@ -1,6 +1,7 @@
 #include "drawing/region_identity.h"
 
 #include "base/colour_difference.h"
+#include "base/each.h"
 #include <string.h>
 
 /*
@@ -173,8 +174,7 @@ GArray *fl_leaf_tracks_find(const FlSurvey *survey, const int *label_of)
 {
     // Once leaves of the same paint at the same place in the document are paired, few are left.
     static const float alike[] = {7, 6, -1};
-    Follow f = {survey, label_of, g_array_new(FALSE, FALSE, sizeof(FlTrack))};
-    g_array_set_clear_func(f.tracks, track_clear);
+    Follow f = {survey, label_of, fl_array_of(FlTrack, track_clear)};
     for (int t = 0; t < survey->n_frames; t++) {
         GArray *parts = survey->frame[t].parts;
         FL_EACH (FlSurveyPart, s, parts)

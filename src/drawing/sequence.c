@@ -13,13 +13,6 @@ static void found_clear(void *data)
     g_free(((FlSequenceFrame *)data)->file);
 }
 
-static GArray *found_new(void)
-{
-    GArray *found = g_array_new(FALSE, FALSE, sizeof(FlSequenceFrame));
-    g_array_set_clear_func(found, found_clear);
-    return found;
-}
-
 static void found_add(GArray *found, int number, const char *folder, const char *name)
 {
     const bool here = strcmp(folder, ".") == 0;
@@ -47,8 +40,7 @@ static void group_clear(void *data)
 
 static GArray *group_names(const GPtrArray *names)
 {
-    GArray *groups = g_array_new(FALSE, FALSE, sizeof(Group));
-    g_array_set_clear_func(groups, group_clear);
+    GArray *groups = fl_array_of(Group, group_clear);
     for (guint i = 0; i < names->len; i++) {
         const char *name = names->pdata[i];
         g_auto(FlPattern) p = {0};
@@ -477,7 +469,7 @@ FlSequence *fl_sequence_open(const FlSequenceOptions *options, FlWarnings *warni
     const char *const *inputs = options->inputs;
     const int n_inputs = options->n_inputs;
     g_assert(n_inputs >= 1);
-    g_autoptr(GArray) found = found_new();
+    g_autoptr(GArray) found = fl_array_of(FlSequenceFrame, found_clear);
     if (n_inputs == 1) {
         if (!add_input(found, inputs[0], warnings, error))
             return NULL;

@@ -1,3 +1,4 @@
+#include "base/each.h"
 #include "base/error.h"
 #include "base/json.h"
 #include "job/plan.h"
@@ -486,8 +487,7 @@ char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *cons
                 .paint = paint_pattern(plan),
                 .command = command,
                 .n_parts = count_parts(plan),
-                .tasks = g_array_new(FALSE, FALSE, sizeof(Task))};
-    g_array_set_clear_func(all.tasks, (GDestroyNotify)clear_task);
+                .tasks = fl_array_of(Task, clear_task)};
     all.film = all.n_parts > 1 && plan->out.movie;
     make_tasks(&all);
     char *text = printers[farm](&all, error);

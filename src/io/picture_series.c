@@ -1,5 +1,6 @@
 #include "io/picture_series.h"
 
+#include "base/each.h"
 #include "base/error.h"
 #include "io/pattern.h"
 
@@ -99,8 +100,7 @@ static GArray *list_names(const char *folder, const FlPattern *wanted, const cha
         return fl_none(error, no_match ? FL_ERROR_INPUT : FL_ERROR_STYLE, "%s: cannot be read: %s",
                        folder, below->message);
     }
-    GArray *names = g_array_new(FALSE, FALSE, sizeof(Name));
-    g_array_set_clear_func(names, clear_name);
+    GArray *names = fl_array_of(Name, clear_name);
     const char *file;
     while ((file = g_dir_read_name(dir))) {
         Name name;

@@ -1,5 +1,6 @@
 #include "keep/store.h"
 
+#include "base/each.h"
 #include "keep/sealed.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -265,8 +266,7 @@ static int by_use(const void *a, const void *b)
 /* A tenth below the limit, so that it is not met again at once. The caller has the lock. */
 static void trim(FlStore *store)
 {
-    g_autoptr(GArray) files = g_array_new(FALSE, FALSE, sizeof(KeptFile));
-    g_array_set_clear_func(files, (GDestroyNotify)clear_kept);
+    g_autoptr(GArray) files = fl_array_of(KeptFile, clear_kept);
     double bytes = 0;
     for (int k = 0; k < 256; k++) {
         g_autofree char *folder = g_strdup_printf("%s/%02x", store->folder, k);

@@ -1,5 +1,6 @@
 #include "params/keys.h"
 
+#include "base/each.h"
 #include "base/error.h"
 #include "params/text.h"
 
@@ -64,8 +65,7 @@ static bool add_key(FlKeys *keys, const GMatchInfo *match, GError **error)
 FlKeys *fl_keys_read(const struct FlOption *option, bool replace, const char *text, GError **error)
 {
     g_autoptr(FlKeys) keys = g_new0(FlKeys, 1);
-    *keys = (FlKeys){option, replace, g_strdup(text), g_array_new(FALSE, FALSE, sizeof(FlKey))};
-    g_array_set_clear_func(keys->key, clear_key);
+    *keys = (FlKeys){option, replace, g_strdup(text), fl_array_of(FlKey, clear_key)};
     g_autoptr(GRegex) form =
         g_regex_new("\\s*(\\S.*?)@(-?[0-9]+)(?:~([0-9]+))?(?:\\s+|$)", 0, 0, NULL);
     g_autoptr(GMatchInfo) match = NULL;

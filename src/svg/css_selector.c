@@ -326,14 +326,12 @@ static char *key_of(const Compound *compound)
 static FlSelector *parse_one(const char *text, int depth)
 {
     FlSelector *selector = g_new0(FlSelector, 1);
-    selector->compound = g_array_new(FALSE, FALSE, sizeof(Compound));
-    g_array_set_clear_func(selector->compound, compound_clear);
+    selector->compound = fl_array_of(Compound, compound_clear);
     const char *s = fl_css_space(text);
     char combinator = '\0';
     bool good = *s != '\0';
     while (good && *s) {
-        Compound compound = {g_array_new(FALSE, FALSE, sizeof(Simple)), combinator};
-        g_array_set_clear_func(compound.simple, simple_clear);
+        Compound compound = {fl_array_of(Simple, simple_clear), combinator};
         g_array_append_val(selector->compound, compound);
         while (good && *s && !strchr(FL_CSS_SPACE ">+~", *s)) {
             Simple simple = {0};

@@ -105,13 +105,6 @@ static void declaration_clear(void *data)
     g_free(((FlCssDeclaration *)data)->value);
 }
 
-static GArray *declarations_new(void)
-{
-    GArray *list = g_array_new(FALSE, FALSE, sizeof(FlCssDeclaration));
-    g_array_set_clear_func(list, declaration_clear);
-    return list;
-}
-
 /** Cuts "!important" off. */
 static bool cut_important(char *value)
 {
@@ -159,7 +152,7 @@ static void add_declaration(GArray *list, const char *text, size_t n)
 
 GArray *fl_css_declarations(const char *text)
 {
-    GArray *list = declarations_new();
+    GArray *list = fl_array_of(FlCssDeclaration, declaration_clear);
     g_autofree char *bare = fl_css_without_comments(text);
     for (const char *s = fl_css_space(bare); *s; s = fl_css_space(s)) {
         const char *end = fl_css_find_past(s, ";");
@@ -234,7 +227,7 @@ static char *nest(const char *parent, const char *selectors)
 /** Reads the block of a style rule: declarations and nested rules. */
 static void read_block(Reader *reader, const char *selectors, const char *block, const Place *place)
 {
-    g_autoptr(GArray) declarations = declarations_new();
+    g_autoptr(GArray) declarations = fl_array_of(FlCssDeclaration, declaration_clear);
     const Place inside = {place->file, selectors, place->layer, place->depth + 1};
     GString *nested = g_string_new(NULL);
     for (const char *s = fl_css_space(block); *s; s = fl_css_space(s)) {
@@ -275,8 +268,7 @@ static void read_keyframes(Reader *reader, const char *name, const char *block, 
         if (other->rank > layer->rank || (other == layer && prefixed && !rival->prefixed))
             return;
     }
-    GArray *frames = g_array_new(FALSE, FALSE, sizeof(FlCssKeyframe));
-    g_array_set_clear_func(frames, keyframe_clear);
+    GArray *frames = fl_array_of(FlCssKeyframe, keyframe_clear);
     for (const char *s = fl_css_space(block); *s;) {
         const char *open = fl_css_find(s, "{");
         const char *close = *open == '{' ? fl_css_find(open + 1, "}") : open;
@@ -530,8 +522,7 @@ FlCssSheet *fl_css_sheet_take(xmlDoc *doc, const char *path, int number, FlCssPa
                               GPtrArray *files, FlWarnings *warnings)
 {
     FlCssSheet *sheet = g_new0(FlCssSheet, 1);
-    sheet->rules = g_array_new(FALSE, FALSE, sizeof(FlCssRule));
-    g_array_set_clear_func(sheet->rules, rule_clear);
+    sheet->rules = fl_array_of(FlCssRule, rule_clear);
     sheet->selectors = g_ptr_array_new_with_free_func((GDestroyNotify)g_ptr_array_unref);
     sheet->keyframes =
         g_hash_table_new_full(g_str_hash, g_str_equal, g_free, (GDestroyNotify)g_array_unref);

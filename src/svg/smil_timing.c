@@ -295,8 +295,7 @@ void fl_animation_add_length(const FlAnimation *a, FlFilmLength *length)
 
 FlTimeline fl_timeline_of(xmlDoc *doc)
 {
-    FlTimeline timeline = {g_array_new(FALSE, FALSE, sizeof(FlAnimation)), fl_document_ids(doc)};
-    g_array_set_clear_func(timeline.animation, animation_clear);
+    FlTimeline timeline = {fl_array_of(FlAnimation, animation_clear), fl_document_ids(doc)};
     collect(&timeline, xmlDocGetRootElement(doc));
     FL_EACH (FlAnimation, a, timeline.animation)
         read_animation(&timeline, a);

@@ -486,9 +486,8 @@ int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPageSize page,
     if (!svg->others)
         svg->others = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, other_free);
     const xmlNode *node = g_hash_table_lookup(svg->leaves->ids, leaf->id);
-    g_autoptr(GArray) ops = g_array_new(FALSE, FALSE, sizeof(Op));
+    g_autoptr(GArray) ops = fl_array_of(Op, op_clear);
     Reader r = {svg, ops, MOST_ELEMENTS};
-    g_array_set_clear_func(ops, op_clear);
     const FlInherited s = fl_inherited_by(inheritance, node);
     const Around around = around_of(node);
     add_element(&r, node, &s, &around);

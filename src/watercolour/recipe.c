@@ -1,5 +1,6 @@
 #include "watercolour/recipe.h"
 
+#include "base/each.h"
 #include "base/error.h"
 #include "base/limits.h"
 #include "params/key_table.h"
@@ -284,10 +285,9 @@ static bool check_section(const Section *section, const char *path, GError **err
 FlRecipe *fl_recipe_load(const char *path, GError **error)
 {
     g_autoptr(FlRecipe) recipe = defaults();
-    g_autoptr(GArray) sections = g_array_new(FALSE, FALSE, sizeof(Section));
+    g_autoptr(GArray) sections = fl_array_of(Section, clear_section);
     Reader reader = {recipe, sections};
     const FlKeyReader calls = {begin_section, read_key, &reader, FL_ERROR_INPUT, NULL};
-    g_array_set_clear_func(sections, clear_section);
     if (!fl_key_file_read(path, &calls, error))
         return NULL;
     for (guint i = 0; i < sections->len; i++)

@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "base/each.h"
 #include "base/error.h"
 #include "base/rng.h"
 #include "worker/hand_line.h"
@@ -48,8 +49,7 @@ static bool fits(const Draw *draw, const FlRequest *frame, const FlDrawStep *ste
 
 static GArray *draws_of(const FlRequest *frame)
 {
-    GArray *draws = g_array_new(FALSE, FALSE, sizeof(Draw));
-    g_array_set_clear_func(draws, draw_clear);
+    GArray *draws = fl_array_of(Draw, draw_clear);
     for (int i = 0; i < frame->n_steps; i++) {
         const FlDrawStep *step = &frame->step[i];
         Draw *found = NULL;

@@ -1,4 +1,5 @@
 #include "worker/probe.h"
+#include "base/each.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,13 +14,6 @@ static void probe_clear(void *data)
     g_free(probe->paint);
 }
 
-static GArray *new_probes(void)
-{
-    GArray *probes = g_array_new(FALSE, FALSE, sizeof(FlProbe));
-    g_array_set_clear_func(probes, probe_clear);
-    return probes;
-}
-
 bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, FlPageSize page, int width, int height,
                          GError **error)
 {
@@ -29,7 +23,7 @@ bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, FlPageSize page, int width
     f->page.height = page.height / f->factor;
     f->all =
         (FlRect){0, 0, MAX(1, (int)ceil(width / f->factor)), MAX(1, (int)ceil(height / f->factor))};
-    f->probes = new_probes();
+    f->probes = fl_array_of(FlProbe, probe_clear);
     f->coverage = fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error);
     f->below =
         f->coverage ? fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error) : NULL;
