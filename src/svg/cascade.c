@@ -613,7 +613,7 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
                                      : own_value(c, node, values, "font-size", &style);
     if (font_size || fl_is_root(node))
         set_font_size(&style, node, values, font_size, owned);
-    GString *text = g_string_new(NULL);
+    g_autoptr(GString) text = g_string_new(NULL);
     compute_attributes(c, node, &style);
     FL_EACH (const Value, v, values)
         if (v->property)
@@ -621,7 +621,6 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     fix_percentages(node, &style);
     if (values->len > 0 || own->len > 0)
         fl_set_attribute(node, "style", text->str);
-    g_string_free(text, TRUE);
     c->has_text |= fl_is(node, "text");
     xmlNode *copy = g_hash_table_lookup(c->copies, node);
     if (copy) {

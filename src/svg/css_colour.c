@@ -534,7 +534,7 @@ char *fl_css_colour(const char *text)
 char *fl_css_colour_with(const char *text, const char *current)
 {
     static const char word[] = "currentcolor";
-    GString *out = g_string_new(NULL);
+    g_autoptr(GString) out = g_string_new(NULL);
     if (!strchr(text, '(') || !strpbrk(text, "cC"))
         current = NULL;
     for (; current && *text; text++)
@@ -543,9 +543,7 @@ char *fl_css_colour_with(const char *text, const char *current)
             text += sizeof word - 2;
         } else
             g_string_append_c(out, *text);
-    char *colour = fl_css_colour(current ? out->str : text);
-    g_string_free(out, TRUE);
-    return colour;
+    return fl_css_colour(current ? out->str : text);
 }
 
 char *fl_css_colour_in_linear_light(const char *text)

@@ -302,7 +302,7 @@ static xmlNode *add_matrix(xmlNode *filter, const char *name, double v)
     double m[3][4];
     if (!colour_matrix(name, v, m))
         return NULL;
-    GString *values = g_string_new(NULL);
+    g_autoptr(GString) values = g_string_new(NULL);
     for (int i = 0; i < 12; i++) {
         g_autofree char *number = fl_css_number_text(m[i / 4][i % 4]);
         g_string_append_printf(values, i % 4 == 3 ? "0 %s " : "%s ", number);
@@ -310,7 +310,6 @@ static xmlNode *add_matrix(xmlNode *filter, const char *name, double v)
     g_string_append(values, "0 0 0 1 0");
     xmlNode *matrix = add_child(filter, "feColorMatrix");
     fl_set_attribute(matrix, "values", values->str);
-    g_string_free(values, TRUE);
     return matrix;
 }
 
@@ -463,19 +462,17 @@ static char *scaled(const char *list, double factor, const FlCssUnits *units)
 {
     const double diagonal = hypot(units->width, units->height) / G_SQRT2;
     g_auto(GStrv) part = g_regex_split_simple("[ ,\t\r\n]+", list, 0, 0);
-    GString *out = g_string_new(NULL);
+    g_autoptr(GString) out = g_string_new(NULL);
     for (int i = 0; part[i]; i++) {
         double value;
         if (!*part[i])
             continue;
-        if (!fl_css_number(part[i], units, diagonal, &value)) {
-            g_string_free(out, TRUE);
+        if (!fl_css_number(part[i], units, diagonal, &value))
             return NULL;
-        }
         g_autofree char *text = fl_css_number_text(value * factor);
         g_string_append_printf(out, "%s%s", out->len ? "," : "", text);
     }
-    return g_string_free(out, FALSE);
+    return g_string_free(g_steal_pointer(&out), FALSE);
 }
 
 /** Scales the properties of a stroke that are lengths. */

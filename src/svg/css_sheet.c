@@ -229,7 +229,7 @@ static void read_block(Reader *reader, const char *selectors, const char *block,
 {
     g_autoptr(GArray) declarations = fl_array_of(FlCssDeclaration, declaration_clear);
     const Place inside = {place->file, selectors, place->layer, place->depth + 1};
-    GString *nested = g_string_new(NULL);
+    g_autoptr(GString) nested = g_string_new(NULL);
     for (const char *s = fl_css_space(block); *s; s = fl_css_space(s)) {
         const bool custom = s[0] == '-' && s[1] == '-';
         const char *end = fl_css_find(s, custom ? ";" : ";{");
@@ -245,7 +245,6 @@ static void read_block(Reader *reader, const char *selectors, const char *block,
     if (declarations->len > 0)
         add_rules(reader, selectors, declarations, place->layer);
     read_rules(reader, nested->str, &inside);
-    g_string_free(nested, TRUE);
 }
 
 /* ---- rules with an @ ------------------------------------------------------------------------- */

@@ -434,13 +434,12 @@ static void mend_caps(xmlNode *path)
     if (!d || (!square && strpbrk(d, "LlHhVvCcSsQqTtAaZz"))) // as nearly all have
         return;
     g_autoptr(FlOutlines) outlines = fl_outlines_of_shape(path, 96, (FlPageSize){1, 1});
-    GString *dots = g_string_new(NULL);
+    g_autoptr(GString) dots = g_string_new(NULL);
     g_string_prepend(dots, append_dots(dots, outlines) ? "" : d);
     if (outlines->n_subpaths == 0)
         fl_declare(path, "stroke-linecap:butt");
     else if (square)
         fl_set_attribute(path, "d", dots->str);
-    g_string_free(dots, TRUE);
 }
 
 /* ---- text ------------------------------------------------------------------------------------ */
