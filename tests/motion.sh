@@ -73,6 +73,9 @@ paint_disc seam --loop --dump seam_dump && paint_disc open --dump open_dump &&
     [ "$(motion_of open_dump/red-aa3311/motion_0002.flo)" = 35 ] &&
     ! same seam/w_0001.png open/w_0001.png
 result $? 'the motion over the seam is from the last frame to the first'
+paint_disc halved --style-by-page off --flow $slide --dump halved_dump &&
+    [ "$(motion_of halved_dump/red-aa3311/motion_0002.flo)" = 35 ]
+result $? 'a dump is as large as the frame where the paint is searched at half its size'
 paint_disc skipped -f 1,2,4-6 --dump gap_dump &&
     [ "$(motion_of gap_dump/red-aa3311/motion_0004.flo)" = 70 ]
 result $? 'the motion over frames that are not painted is between those that are'
