@@ -98,7 +98,7 @@ static void carry_once(const FlGuides *guides, float carry, int frame, const FlN
                        FlCarried *out)
 {
     g_autoptr(GError) error = NULL;
-    const FlCarry how = {guides, carry, true, frame, SIDE, shape_of_columns(), NULL};
+    const FlCarry how = {guides, carry, true, frame, SIDE, shape_of_columns(), NULL, NULL};
     g_assert_true(fl_carried_init(out, SIDE, SIDE, &error));
     fl_nnf_carry(nnf, whole, &how, whole, &level, out);
 }
@@ -166,6 +166,56 @@ static void a_slow_spin_carries_and_turns_as_far_in_the_end(void)
 static void half_a_pixel(double x, double y, double u[2])
 {
     u[0] = 0.48, u[1] = -0.49;
+}
+
+enum { CONTOUR = 8, BORDER = 16, WIDE = 2 * SIDE }; // columns of the frame, px
+
+static void squeezes(double x, double y, double u[2])
+{
+    u[0] = 0.01 * (CONTOUR - CENTRE - x), u[1] = 0;
+}
+
+static void swells(double x, double y, double u[2])
+{
+    u[0] = -0.01 * (CONTOUR - CENTRE - x), u[1] = 0;
+}
+
+/* The depth that a pixel shows after 20 frames which move it by a fifth of its depth. */
+static double depth_shown(Motion motion, const FlExemplar *exemplar, int depth)
+{
+    g_auto(FlGuides) guides = {0};
+    g_auto(FlNnf) nnf = {0};
+    moving_guides(motion, 0, &guides);
+    for (int p = 0; p < SIDE * SIDE; p++)
+        guides.distance[p] = (float)(p % SIDE - CONTOUR);
+    coherent_field(&nnf);
+    for (int f = 1; f <= 20; f++) {
+        g_auto(FlCarried) next = {0};
+        const FlCarry how = {&guides, 1, true, f, SIDE, shape_of_columns(), NULL, exemplar};
+        g_assert_true(fl_carried_init(&next, SIDE, SIDE, NULL));
+        fl_nnf_carry(&nnf, whole, &how, whole, exemplar ? &exemplar->level[0] : &level, &next);
+        fl_nnf_clear(&nnf);
+        nnf = next.nnf, next.nnf = (FlNnf){0};
+    }
+    double place[2];
+    (void)match_of(&nnf, depth + CONTOUR - CENTRE, 0, place);
+    return place[0] + CENTRE - CONTOUR;
+}
+
+static void a_rim_is_as_wide_in_a_shape_that_swells_or_shrinks(void)
+{
+    static float distance[WIDE * WIDE];
+    for (int p = 0; p < WIDE * WIDE; p++)
+        distance[p] = (float)(p % WIDE - CENTRE - CONTOUR);
+    FlExemplar exemplar = {.n_levels = 1, .border_px = BORDER, .distance = distance};
+    exemplar.level[0] = level;
+    exemplar.level[0].window = 1;
+    for (int depth = 2; depth < BORDER; depth += 3) {
+        assert_near(depth_shown(squeezes, &exemplar, depth), depth, 0.7);
+        assert_near(depth_shown(swells, &exemplar, depth), depth, 0.7);
+    }
+    assert_near(depth_shown(squeezes, NULL, 12), 14.6, 0.7);
+    assert_near(depth_shown(squeezes, &exemplar, 40), 48.8, 1); // the body goes with its motion
 }
 
 /* Squares of other frames of the exemplar go as far as what they show. */
@@ -287,6 +337,7 @@ int main(int argc, char **argv)
 #define TEST(name) g_test_add_func("/carry/" #name, name)
     TEST(slow_motion_carries_as_far_in_the_end);
     TEST(a_slow_spin_carries_and_turns_as_far_in_the_end);
+    TEST(a_rim_is_as_wide_in_a_shape_that_swells_or_shrinks);
     TEST(pieces_travel_as_fast_as_what_they_show);
     TEST(a_share_is_carried_and_what_goes_along_is_left);
     TEST(what_is_uncovered_has_no_match);

@@ -1,6 +1,8 @@
 #include "synth/carry.h"
 
 #include "base/alloc.h"
+#include "base/curves.h"
+#include "guides/distance.h"
 #include "guides/guides.h"
 #include "synth/rotation.h"
 #include <assert.h>
@@ -177,6 +179,82 @@ static bool was_cut(int was, int is, int size)
     return (was < EDGE && is >= EDGE) || (was >= size - EDGE && is < size - EDGE);
 }
 
+/* ---- rims ------------------------------------------------------------------------------------ */
+
+#define SPAN 4 // px: least depth of the inner of two pixels that show how a rim widens
+
+float fl_beside_rim(const FlExemplar *exemplar, FlMatch m)
+{
+    const FlExemplarLevel *level = &exemplar->level[0];
+    const size_t row = (size_t)m.frame * (size_t)level->height + (size_t)fl_match_y(m);
+    const float depth = exemplar->distance[row * (size_t)level->width + (size_t)fl_match_x(m)];
+    return 1 - fl_smooth_between(exemplar->border_px, 2 * exemplar->border_px, depth);
+}
+
+/* The unit vector away from the contour; false in the middle of a shape, where sides meet. */
+static bool inward(const float *distance, int width, int height, int x, int y, float g[2])
+{
+    fl_distance_gradient(distance, width, height, x, y, g);
+    const float length = sqrtf(g[0] * g[0] + g[1] * g[1]), least = 0.25f;
+    g[0] /= MAX(length, least), g[1] /= MAX(length, least);
+    return length >= least;
+}
+
+FlMatch fl_match_deeper(const FlExemplar *exemplar, FlMatch m, float sixteenths, const float off[2])
+{
+    const FlExemplarLevel *level = &exemplar->level[0];
+    const int width = level->width, height = level->height;
+    const size_t frame = (size_t)m.frame * (size_t)height * (size_t)width;
+    float g[2];
+    if (!inward(exemplar->distance + frame, width, height, fl_match_x(m), fl_match_y(m), g))
+        return m;
+    const int x = m.x_16 + (int)floorf(sixteenths * g[0] + off[0]);
+    const int y = m.y_16 + (int)floorf(sixteenths * g[1] + off[1]);
+    m.x_16 = (uint16_t)CLAMP(x, 0, 16 * (width - 1));
+    m.y_16 = (uint16_t)CLAMP(y, 0, 16 * (height - 1));
+    return m;
+}
+
+/* The pixel at some px from (x, y) along g. */
+static size_t pixel_along(const FlGuides *guides, int x, int y, const float g[2], float px)
+{
+    return fl_guides_at(guides, CLAMP(x + (int)lrintf(px * g[0]), 0, guides->width - 1),
+                        CLAMP(y + (int)lrintf(px * g[1]), 0, guides->height - 1));
+}
+
+/* The px by which the motion takes a pixel away from the contour; 0 where that is unknown. */
+static float sinks(const FlGuides *guides, int x, int y)
+{
+    const float depth = guides->distance[fl_guides_at(guides, x, y)];
+    float g[2];
+    if (!inward(guides->distance, guides->width, guides->height, x, y, g))
+        return 0;
+    const size_t edge = pixel_along(guides, x, y, g, MIN(1 - depth, 0));
+    const size_t inner = pixel_along(guides, x, y, g, MAX(SPAN - depth, 0));
+    const int32_t *a = guides->motion + 2 * edge, *b = guides->motion + 2 * inner;
+    const float apart = guides->distance[inner] - guides->distance[edge];
+    if (apart < 1 || a[0] == FL_MOTION_UNKNOWN || b[0] == FL_MOTION_UNKNOWN)
+        return 0;
+    const float x_widens = (float)b[0] - (float)a[0], y_widens = (float)b[1] - (float)a[1];
+    return depth / apart * (x_widens * g[0] + y_widens * g[1]) / FL_MOTION_ONE;
+}
+
+/* A match of the pixel whose paint the motion has stretched or squeezed, as deep as it was. */
+static FlMatch as_deep(const Plan *plan, FlMatch m, int x, int y)
+{
+    const FlExemplar *exemplar = plan->input->exemplar;
+    const FlGuides *guides = plan->input->guides;
+    const float off[2] = {(float)plan->x_off / ROUND_ONE, (float)plan->y_off / ROUND_ONE};
+    if (!exemplar || m.frame == FL_NO_MATCH || !fl_exemplar_has(plan->level, m.frame))
+        return m;
+    const float beside = fl_beside_rim(exemplar, m);
+    const float most = exemplar->border_px, px = beside > 0 ? sinks(guides, x, y) : 0;
+    const float share = beside * carry_at(plan->input, fl_guides_at(guides, x, y));
+    return px != 0 ? fl_match_deeper(exemplar, m, 16 * share * CLAMP(px, -most, most), off) : m;
+}
+
+/* ---- a frame --------------------------------------------------------------------------------- */
+
 /* The pixel at (x, y) of the frame, p of out. */
 static void arrive(const Plan *plan, const FlNnf *before, FlRect from, int x, int y, size_t p,
                    FlCarried *out)
@@ -199,7 +277,7 @@ static void arrive(const Plan *plan, const FlNnf *before, FlRect from, int x, in
     FlMatch m = origin.match;
     if (m.frame != FL_NO_MATCH && inside && known) {
         const int turn = guides->turn[pixel] * in_steps(carry) / CARRY_ONE;
-        m = carried(plan, m, origin.rest, (int16_t)turn);
+        m = as_deep(plan, carried(plan, m, origin.rest, (int16_t)turn), x, y);
         m.off = off_from(plan, origin.off);
         if (was_cut(from.x + origin.x, x, guides->width) ||
             was_cut(from.y + origin.y, y, guides->height))

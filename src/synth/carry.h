@@ -11,6 +11,7 @@ typedef struct FlCarry {
     int frame;                  // the frame-th painted one: decides which way places are rounded
     int width;                  // of the frame before, whose planes follow
     const uint8_t *shape, *wet; // fl_rest_shape(), and how wet the paint was; wet may be NULL
+    const FlExemplar *exemplar; // of paint whose rim keeps its width; NULL: it swells and shrinks
 } FlCarry;
 
 /** The carried matches and planes of a rectangle. Planes are 0 at pixels without a match. */
@@ -30,7 +31,8 @@ void fl_carried_clear(FlCarried *carried);
  * direction guide. A pixel takes the match whose paint comes nearest to the pixel: FlMatch.off
  * stores the paint's position to a fraction of a pixel, so that pieces of the exemplar travel as
  * fast as the shapes that they paint. The match is shifted by the distance between its pixel and
- * the pixel that it was taken from, and turned.
+ * the pixel that it was taken from, and turned. Where the shape grows or shrinks, paint of the rim
+ * keeps its distance from the contour.
  *
  * Matches are not carried where the motion is unknown, nor inward from a side of the page, where
  * their patches were cut off; the speed where it is unknown is the part of the flow that
@@ -39,6 +41,14 @@ void fl_carried_clear(FlCarried *carried);
  */
 void fl_nnf_carry(const FlNnf *before, FlRect from, const FlCarry *input, FlRect rect,
                   const FlExemplarLevel *level, FlCarried *out);
+
+/** A match moved away from the contour in its frame of the exemplar. off: what is added to its
+ * place, 1/16 px, before that is rounded down. */
+FlMatch fl_match_deeper(const FlExemplar *exemplar, FlMatch m, float sixteenths,
+                        const float off[2]);
+
+/** 1 for a match beside the rim, 0 from two borders on. */
+float fl_beside_rim(const FlExemplar *exemplar, FlMatch m);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlCarried, fl_carried_clear)
 

@@ -207,24 +207,13 @@ static const float *distances(const FlExemplar *exemplar, int frame)
 /* The place in another frame that lies as deep, as far as it is beside the rim. */
 static FlMatch in_frame(const FlExemplar *exemplar, FlMatch m, int frame)
 {
-    const FlExemplarLevel *level = &exemplar->level[0];
-    const int x = fl_match_x(m), y = fl_match_y(m), width = level->width;
-    const size_t at = (size_t)y * (size_t)width + (size_t)x;
-    const float depth = distances(exemplar, m.frame)[at];
-    const float beside = 1 - fl_smooth_between(exemplar->border_px, 2 * exemplar->border_px, depth);
+    static const float nearest[2] = {0.5f, 0.5f};
+    const size_t at =
+        (size_t)fl_match_y(m) * (size_t)exemplar->level[0].width + (size_t)fl_match_x(m);
+    const float beside = fl_beside_rim(exemplar, m);
+    const float rises = distances(exemplar, m.frame)[at] - distances(exemplar, frame)[at];
     m.frame = (int16_t)frame;
-    if (beside <= 0)
-        return m;
-    float g[2];
-    fl_distance_gradient(distances(exemplar, frame), width, level->height, x, y, g);
-    const float length = sqrtf(g[0] * g[0] + g[1] * g[1]);
-    const float deeper = distances(exemplar, frame)[at] - depth;
-    if (length < 0.25f)
-        return m;
-    const float out = 16 * beside * deeper / length;
-    m.x_16 = (uint16_t)CLAMP(m.x_16 - (int)lrintf(out * g[0]), 0, 16 * (width - 1));
-    m.y_16 = (uint16_t)CLAMP(m.y_16 - (int)lrintf(out * g[1]), 0, 16 * (level->height - 1));
-    return m;
+    return beside > 0 ? fl_match_deeper(exemplar, m, 16 * beside * rises, nearest) : m;
 }
 
 /* was: the wetness that the match shows; below 0: unknown, since paint plays. */

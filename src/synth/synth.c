@@ -77,8 +77,9 @@ static bool carry_last(const FlSynth *synth, const FlGuides *guides, FlRect rect
     g_autofree uint8_t *angle = fl_alloc_unset(fl_rect_pixels(rect), 1, "a field", error);
     if (!angle || !fl_carried_init(out, rect.width, rect.height, error))
         return false;
-    const FlCarry carry = {guides,       params->carry, params->rotate, last->frame,
-                           synth->width, last->mask,    last->wet};
+    const FlCarry carry = {
+        guides,       params->carry, params->rotate, last->frame,
+        synth->width, last->mask,    last->wet,      params->settled > 0 ? synth->exemplar : NULL};
     fl_nnf_carry(&last->nnf, last->rect, &carry, rect, &synth->exemplar->level[0], out);
     fl_rect_copy(guides->angle, fl_guides_rect(guides), angle, rect, 1);
     const FlTargetMotion motion = {out->speed, angle, params->flow_still, synth->boil};
