@@ -491,7 +491,8 @@ static void beside_a_wash_all_is_as_at_its_rim(void)
 }
 
 /* White is bare paper where it was painted, and nothing between the bristles of its rim, where it
- * would be an even border; thin paint there is no thicker on the dark side. */
+ * would be an even border; thin paint there is no thicker on the dark side. A quarter of the fill
+ * is bare already: half of it is lighter than white, and would be a bright outline. */
 static void white_ends_where_its_paint_ends(void)
 {
     enum { STEP = 5 };
@@ -505,14 +506,15 @@ static void white_ends_where_its_paint_ends(void)
                    .height = 2};
     for (int k = 0; k < FL_WASH_PLANES; k++)
         wash.plane[k] = k == FL_WASH_TONE ? dark : zero;
-    int16_t amounts[] = {0, 100, 900};
-    int8_t play[] = {99, 99, 99};
-    FlColumns row = {0, 3};
-    const FlArea area = {{0, 0, 3, 1}, &row};
+    int16_t amounts[] = {0, 100, 900, 256};
+    int8_t play[] = {99, 99, 99, 99};
+    FlColumns row = {0, 4};
+    const FlArea area = {{0, 0, 4, 1}, &row};
     fl_wash_lay(&wash, 1, &area, amounts, play);
     g_assert_cmpint(amounts[0], ==, 0);
     g_assert_cmpint(amounts[1], ==, 100);
     g_assert_cmpint(amounts[2], >, 900);
+    g_assert_cmpint(amounts[3], >, 900);
     g_assert_cmpint(play[2], >, 20);
 }
 

@@ -200,8 +200,8 @@ void fl_wash_find_tones(const FlWash *wash, float *tones, float *hues)
     find_tones(&brush, &fields, tones, hues);
 }
 
-/* calm: 1 for the amount that is the fill, 0 for that of the recording, whose edges stay; white
- * is bare paper inside them, and at them as thin as it was recorded. */
+/* calm: 1 for the amount that is the fill, 0 for that of the recording, whose edges stay; white is
+ * bare paper from little paint on, since its thin paint is lighter than thick: a bright outline. */
 static inline int32_t amount_of(const Brush *brush, int32_t recorded, float calm, float tone)
 {
     const float inside = fl_clamp(2.5f / FL_AMOUNT_ONE * (float)recorded - .5f, 0, 1);
@@ -209,7 +209,8 @@ static inline int32_t amount_of(const Brush *brush, int32_t recorded, float calm
     const int i = (int)((fl_clamp(tone, TONE_LEAST, 1.37f) - TONE_LEAST) * TONE_ONE);
     const int32_t laid = ((int32_t)amount * brush->factor[i] + 64 * 255 / 2) / (64 * 255);
     const float bare = .9f * FL_AMOUNT_ONE + .1f * amount;
-    const float white = (float)recorded + inside * (bare - (float)recorded);
+    const float painted = fl_clamp(8.f / FL_AMOUNT_ONE * (float)recorded - .8f, 0, 1);
+    const float white = (float)recorded + painted * (bare - (float)recorded);
     const float mixed = (float)laid + brush->white * (white - (float)laid);
     return MIN((int32_t)mixed, FL_AMOUNTS - 1);
 }
