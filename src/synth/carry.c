@@ -239,6 +239,14 @@ static float sinks(const FlGuides *guides, int x, int y)
     return depth / apart * (x_widens * g[0] + y_widens * g[1]) / FL_MOTION_ONE;
 }
 
+/* 0 where the rim is narrower than the exemplar's, or there is none: it goes with its shape. */
+static float whole_rim(const FlGuides *guides, size_t p)
+{
+    const float distance = guides->distance[p];
+    return distance > 0 ? fl_smooth_between(0.8f, 1, distance / MAX(guides->depth[p], distance))
+                        : 1;
+}
+
 /* A match of the pixel whose paint the motion has stretched or squeezed, as deep as it was. */
 static FlMatch as_deep(const Plan *plan, FlMatch m, int x, int y)
 {
@@ -247,9 +255,10 @@ static FlMatch as_deep(const Plan *plan, FlMatch m, int x, int y)
     const float off[2] = {(float)plan->x_off / ROUND_ONE, (float)plan->y_off / ROUND_ONE};
     if (!exemplar || m.frame == FL_NO_MATCH || !fl_exemplar_has(plan->level, m.frame))
         return m;
-    const float beside = fl_beside_rim(exemplar, m);
+    const size_t pixel = fl_guides_at(guides, x, y);
+    const float beside = fl_beside_rim(exemplar, m) * whole_rim(guides, pixel);
     const float most = exemplar->border_px, px = beside > 0 ? sinks(guides, x, y) : 0;
-    const float share = beside * carry_at(plan->input, fl_guides_at(guides, x, y));
+    const float share = beside * carry_at(plan->input, pixel);
     return px != 0 ? fl_match_deeper(exemplar, m, 16 * share * CLAMP(px, -most, most), off) : m;
 }
 
