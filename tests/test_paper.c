@@ -56,6 +56,15 @@ static double deviation_of(const double *values, double *mean)
     return sqrt(squares / (SIDE * SIDE) - *mean * *mean);
 }
 
+/* The lightness of a sheet of a kind. */
+static double *lightness_of_kind(int kind, uint64_t seed, double *mean, double *deviation)
+{
+    g_autoptr(FlPaperSheet) sheet = sheet_of(words[kind], seed, SIDE, SIDE, 0);
+    double *light = lightness_of(sheet, fl_paper_grain((FlPaperKind)kind)->colour);
+    *deviation = deviation_of(light, mean);
+    return light;
+}
+
 static double correlation(const double *values, double mean, double deviation, int dx, int dy)
 {
     double sum = 0;
@@ -69,10 +78,8 @@ static double correlation(const double *values, double mean, double deviation, i
 static void light_comes_from_above(void)
 {
     for (int kind = 0; kind < FL_PAPER_KINDS; kind++) {
-        double mean;
-        g_autoptr(FlPaperSheet) sheet = sheet_of(words[kind], 1, SIDE, SIDE, 0);
-        g_autofree double *light = lightness_of(sheet, fl_paper_grain((FlPaperKind)kind)->colour);
-        const double deviation = deviation_of(light, &mean);
+        double mean, deviation;
+        g_autofree double *light = lightness_of_kind(kind, 1, &mean, &deviation);
         const double down = correlation(light, mean, deviation, 2, 2);
         const double up = correlation(light, mean, deviation, -2, 2);
         g_test_message("%s: along the diagonals %.3f and %.3f", words[kind], down, up);
@@ -85,11 +92,8 @@ static void lightness_deviates_as_in_scans(void)
     static const double wanted[FL_PAPER_KINDS] = {1.5, 1.0, 2.0, 1.1, 1.4};
     for (int kind = 0; kind < FL_PAPER_KINDS; kind++)
         for (uint64_t seed = 1; seed <= 3; seed++) {
-            double mean;
-            g_autoptr(FlPaperSheet) sheet = sheet_of(words[kind], seed, SIDE, SIDE, 0);
-            g_autofree double *light =
-                lightness_of(sheet, fl_paper_grain((FlPaperKind)kind)->colour);
-            const double deviation = deviation_of(light, &mean);
+            double mean, deviation;
+            g_autofree double *light = lightness_of_kind(kind, seed, &mean, &deviation);
             g_test_message("%s, seed %d: L* %.2f, deviation %.3f", words[kind], (int)seed, mean,
                            deviation);
             g_assert_cmpfloat_with_epsilon(deviation, wanted[kind], .1 * wanted[kind]);
@@ -116,10 +120,8 @@ static void grains_have_hues(void)
 static void nothing_repeats(void)
 {
     for (int kind = 0; kind < FL_PAPER_KINDS; kind++) {
-        double mean, most = 0;
-        g_autoptr(FlPaperSheet) sheet = sheet_of(words[kind], 1, SIDE, SIDE, 0);
-        g_autofree double *light = lightness_of(sheet, fl_paper_grain((FlPaperKind)kind)->colour);
-        const double deviation = deviation_of(light, &mean);
+        double mean, deviation, most = 0;
+        g_autofree double *light = lightness_of_kind(kind, 1, &mean, &deviation);
         for (int lag = 40; lag < 160; lag++) {
             most = MAX(most, fabs(correlation(light, mean, deviation, lag, 0)));
             most = MAX(most, fabs(correlation(light, mean, deviation, 0, lag)));
@@ -132,10 +134,8 @@ static void nothing_repeats(void)
 static void little_of_it_is_in_long_waves(void)
 {
     for (int kind = 0; kind < FL_PAPER_KINDS; kind++) {
-        double mean;
-        g_autoptr(FlPaperSheet) sheet = sheet_of(words[kind], 1, SIDE, SIDE, 0);
-        g_autofree double *light = lightness_of(sheet, fl_paper_grain((FlPaperKind)kind)->colour);
-        const double deviation = deviation_of(light, &mean);
+        double mean, deviation;
+        g_autofree double *light = lightness_of_kind(kind, 1, &mean, &deviation);
         double sum = 0; // of means over 16 px squares, whose deviation is that of long waves
         for (int y = 0; y < SIDE; y += 16)
             for (int x = 0; x < SIDE; x += 16) {

@@ -22,8 +22,7 @@ typedef struct Ramps {
  * and its shadow on the paint below would be a dark one. Amid a shape thin washes lie on paper,
  * around which the paint below went: else they would be mottled with it. A hole in them shows what
  * lies below. Thin places of an opaque medium let it through everywhere, the more the darker they
- * are: paper shows least in light paint. What is painted as if cut out of its paper has that below
- * it.
+ * are: paper shows least in light paint. Paint that is cut out with its paper has that below it.
  */
 static Ramps ramps_of(FlMedium medium, int darkness, float white)
 {

@@ -10,11 +10,11 @@
 
 /**
  * Sets knockout, 0..255 per pixel with coverage: at the contour it rises with the amount of paint,
- * from nothing at a fifth of the median to 255 at three fifths, so that a rim fades into what lies
- * below, or from 0 to a fifth where `white`, 0..1, is 1; amid the shape it is 255 from three tenths
- * on, since there paper shows: paint below went around the shape. Holes show what lies below all
- * the same. One becomes the other within
- * radius_px (>= 1) of the contour, as the share of the shape in a square around the pixel rises.
+ * from nothing at a fifth of the median to 255 at three fifths, so that a rim fades into the paint
+ * below; with `white`, 0..1, at 1 it rises from 0 to a fifth. Amid the shape it is 255 from three
+ * tenths on, since there paper shows: paint below went around the shape. Holes show the paint below
+ * all the same. One becomes the other within radius_px (>= 1) of the contour, as the share of the
+ * shape in a square around the pixel rises.
  * Thin places of an opaque medium show it everywhere, the more the darker the fill is than the
  * paper, 0..255; those of FL_MEDIUM_BODY amid no shape.
  *

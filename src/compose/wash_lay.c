@@ -200,8 +200,9 @@ void fl_wash_find_tones(const FlWash *wash, float *tones, float *hues)
     find_tones(&brush, &fields, tones, hues);
 }
 
-/* calm: 1 for the amount that is the fill, 0 for that of the recording, whose edges stay; white is
- * bare paper from little paint on, since its thin paint is lighter than thick: a bright outline. */
+/* calm: 1 for the amount that is the fill, 0 for that of the recording, whose edges stay. White is
+ * bare paper from a fifth of the fill on: its thin paint is lighter than thick paint and would be a
+ * bright outline. */
 static inline int32_t amount_of(const Brush *brush, int32_t recorded, float calm, float tone)
 {
     const float inside = fl_clamp(2.5f / FL_AMOUNT_ONE * (float)recorded - .5f, 0, 1);

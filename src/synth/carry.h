@@ -31,8 +31,8 @@ void fl_carried_clear(FlCarried *carried);
  * direction guide. A pixel takes the match whose paint comes nearest to the pixel: FlMatch.off
  * stores the paint's position to a fraction of a pixel, so that pieces of the exemplar travel as
  * fast as the shapes that they paint. The match is shifted by the distance between its pixel and
- * the pixel that it was taken from, and turned. Where the shape grows or shrinks, paint of a whole
- * rim keeps its distance from the contour.
+ * the pixel that it was taken from, and turned. Paint of a whole rim keeps its distance from the
+ * contour while the shape grows or shrinks.
  *
  * Matches are not carried where the motion is unknown, nor inward from a side of the page, where
  * their patches were cut off; the speed where it is unknown is the part of the flow that
